@@ -1,0 +1,93 @@
+"""Curvature estimated from a quad mesh alone: cubic height functions over two rings.
+
+Around each vertex the height over the tangent plane is fitted by a cubic polynomial (osculating
+jet, Cazals and Pottmann 2005); two passes, the second over the plane the first one found.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gridshell.arrays import Floats, Indices, Points, Vectors, unit
+from gridshell.mesh import QuadMesh
+
+_LEAST_SAMPLES = 14
+
+
+def principal_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats]:
+    """Principal curvatures at the vertices whose two rings hold enough neighbours.
+
+    Returns
+    -------
+    vertices : (m,) interior vertices with at least 14 neighbours.
+    curvatures : (m, 2) kappa1 <= kappa2, 1/mm; positive where the surface bends towards the
+        normal of its counter-clockwise side.
+    """
+    centre, neighbours = _two_rings(mesh)
+    inside = neighbours >= 0
+    normals = vertex_normals(mesh)[centre]
+    for _ in range(2):
+        frames = _frames(normals)
+        offset = mesh.vertices[neighbours] - mesh.vertices[centre][:, None, :]
+        local = np.einsum("mkc,mic->mki", offset, frames) * inside[..., None]
+        size = np.abs(local[..., :2]).max(axis=(1, 2), keepdims=True)
+        jet = _fit(local / size, inside)
+        gradient = np.concatenate([-jet[:, :2], np.ones((len(jet), 1))], axis=1)
+        normals = unit(np.einsum("mi,mic->mc", gradient, frames))
+    return centre, _curvatures(jet) / size[:, 0]
+
+
+def vertex_normals(mesh: QuadMesh) -> Vectors:
+    """(n, 3) unit normals: the sum of the quads' diagonal cross products."""
+    corners = mesh.vertices[mesh.quads]
+    cross = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    total = np.zeros_like(mesh.vertices)
+    np.add.at(total, mesh.quads.ravel(), np.repeat(cross, 4, axis=0))
+    return unit(total)
+
+
+def _two_rings(mesh: QuadMesh) -> tuple[Indices, Indices]:
+    """Interior vertices and their neighbours over two rings of quads, padded with -1."""
+    from scipy.sparse import csr_matrix
+
+    f = np.repeat(np.arange(len(mesh.quads)), 4)
+    incidence = csr_matrix((np.ones(len(f)), (mesh.quads.ravel(), f)))
+    one = incidence @ incidence.T
+    two = (one @ one).tocsr()
+    two.resize((len(mesh.vertices), len(mesh.vertices)))
+    counts = np.diff(two.indptr)
+    inner = ~mesh.on_boundary & (mesh.valence > 0) & (counts > _LEAST_SAMPLES)
+    centre = np.flatnonzero(inner)
+    neighbours = np.full((len(centre), int(counts[centre].max(initial=0))), -1, dtype=np.int64)
+    slots = np.arange(neighbours.shape[1])
+    valid = slots < counts[centre][:, None]
+    neighbours[valid] = two.indices[(two.indptr[centre][:, None] + slots)[valid]]
+    return centre, neighbours
+
+
+def _frames(normals: Vectors) -> Floats:
+    """(m, 3, 3) rows: two tangents and the normal, right-handed."""
+    helper = np.eye(3)[np.argmin(np.abs(normals), axis=1)]
+    first = unit(np.cross(helper, normals))
+    return np.stack([first, np.cross(normals, first), normals], axis=1)
+
+
+def _fit(local: Points, inside: np.ndarray) -> Floats:
+    """(m, 9) coefficients of x, y, x^2, xy, y^2 and the cubic terms, distance weighted."""
+    x, y, z = np.moveaxis(local, -1, 0)
+    weight = inside * np.exp(-2.0 * (x * x + y * y))
+    terms = [x, y, x * x, x * y, y * y, x**3, x * x * y, x * y * y, y**3]
+    basis = np.stack(terms, axis=-1) * weight[..., None]
+    gram = np.einsum("mki,mkj->mij", basis, basis) + 1e-12 * np.eye(9)
+    right = np.einsum("mki,mk->mi", basis, z * weight)
+    return np.linalg.solve(gram, right[..., None])[..., 0]
+
+
+def _curvatures(jet: Floats) -> Floats:
+    fx, fy = jet[:, 0], jet[:, 1]
+    fxx, fxy, fyy = 2.0 * jet[:, 2], jet[:, 3], 2.0 * jet[:, 4]
+    square = 1.0 + fx * fx + fy * fy
+    gauss = (fxx * fyy - fxy * fxy) / square**2
+    mean = ((1 + fy**2) * fxx - 2 * fx * fy * fxy + (1 + fx**2) * fyy) / (2 * square**1.5)
+    spread = np.sqrt(np.maximum(mean * mean - gauss, 0.0))
+    return np.stack([mean - spread, mean + spread], axis=1)

@@ -1,0 +1,100 @@
+"""Every error a person can meet, drawn once.
+
+::
+
+    GridshellError                      base of everything this project raises on purpose
+    ├── InputError (ValueError)         what was handed in cannot be used
+    │   ├── MeshError                   the mesh is not a manifold, oriented quad mesh
+    │   │   ├── NonManifoldError        an edge with three faces, a vertex with two fans
+    │   │   ├── OrientationError        faces that cannot be oriented consistently (Moebius strip)
+    │   │   ├── OddValenceError         a singularity of odd valence (Fig. 4 of the paper)
+    │   │   └── ColouringError          a closed strip of odd length: D1 and D2 cannot be told apart
+    │   ├── SurfaceError                the surface does not carry what is asked of it
+    │   │   └── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   ├── SettingError                a number or a choice outside its limits
+    │   └── FileError (OSError)         a file that is missing, unreadable or malformed
+    └── SolveError (RuntimeError)       the optimisation ended without a usable net
+
+Each carries *what* went wrong, *where* (key, index, position), the *value* found, the *limit* it
+broke and what to *try*; the message is these five in one or two sentences.
+"""
+
+from __future__ import annotations
+
+
+class GridshellError(Exception):
+    """Base of all errors raised on purpose.
+
+    Parameters
+    ----------
+    what : one clause, no full stop.
+    where : key, face or vertex index, position.
+    value, limit : what was found and what is allowed, already formatted with units.
+    advice : what to try, in the imperative.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        where: str | None = None,
+        value: str | None = None,
+        limit: str | None = None,
+        advice: str | None = None,
+    ) -> None:
+        self.what, self.where, self.value = what, where, value
+        self.limit, self.advice = limit, advice
+        details = [
+            f"{label}{text}"
+            for label, text in (("at ", where), ("found ", value), ("allowed: ", limit))
+            if text is not None
+        ]
+        message = what + (f" ({'; '.join(details)})" if details else "") + "."
+        super().__init__(message + (f" Try: {advice}." if advice else ""))
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class InputError(GridshellError, ValueError):
+    """What was handed in cannot be used."""
+
+
+class MeshError(InputError):
+    """The mesh is not a manifold, oriented quad mesh."""
+
+
+class NonManifoldError(MeshError):
+    """An edge with more than two faces, or a vertex where two fans of faces meet."""
+
+
+class OrientationError(MeshError):
+    """Faces that cannot be oriented consistently."""
+
+
+class OddValenceError(MeshError):
+    """An interior vertex of odd valence: families cannot be continued (Fig. 4)."""
+
+
+class ColouringError(MeshError):
+    """A closed strip of odd length: the vertices cannot be coloured alternately."""
+
+
+class SurfaceError(InputError):
+    """The surface does not carry what is asked of it."""
+
+
+class NotHyperbolicError(SurfaceError):
+    """Asymptotic directions asked for where the Gaussian curvature is not negative."""
+
+
+class SettingError(InputError):
+    """A number or a choice outside its limits."""
+
+
+class FileError(InputError, OSError):
+    """A file that is missing, unreadable or malformed."""
+
+
+class SolveError(GridshellError, RuntimeError):
+    """The optimisation ended without a usable net."""

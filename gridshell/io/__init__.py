@@ -1,0 +1,6 @@
+"""Files of nets and meshes."""
+
+from gridshell.io.net_json import read_net, write_net
+from gridshell.io.obj import Unit, read_obj, write_obj
+
+__all__ = ["Unit", "read_net", "read_obj", "write_net", "write_obj"]

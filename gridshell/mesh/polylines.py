@@ -1,0 +1,115 @@
+"""The polylines of a net by family: what becomes a lamella."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gridshell.arrays import Indices, frozen
+from gridshell.mesh.diagonals import DiagonalMesh
+
+
+@dataclass(frozen=True, eq=False)
+class Polyline:
+    """A maximal run of edges of one family.
+
+    Parameters
+    ----------
+    family : 1 or 2.
+    vertices : (k,) indices into the net; a closed polyline does not repeat its first vertex.
+    closed : whether the last vertex is joined to the first.
+    """
+
+    family: int
+    vertices: Indices
+    closed: bool
+
+
+def polylines(net: DiagonalMesh) -> tuple[Polyline, ...]:
+    """All polylines, family 1 first, each family in the order of its smallest edge.
+
+    Polylines run through regular vertices, along the boundary and around reflex corners; they
+    end at singular vertices and where the net ends.
+    """
+    links = _linked_edges(net)
+    chain, rank, closed = _chains(len(net.edges), links)
+    family = net.family[np.unique(chain, return_index=True)[1]]
+    found = [
+        Polyline(int(label), frozen(_walk(net.edges[order], loop), np.int64), bool(loop))
+        for label, loop, order in zip(family, closed, _split(chain, rank), strict=True)
+    ]
+    return tuple(sorted(found, key=lambda line: line.family))
+
+
+def _linked_edges(net: DiagonalMesh) -> Indices:
+    """(l, 2) pairs of edges that continue each other."""
+    before, centre, after = net.stars.continuations().T
+    n = len(net.vertices)
+    low, high = np.sort(net.edges, axis=1).T
+    keys = low * n + high
+    order = np.argsort(keys)
+
+    def edge_index(a: Indices, b: Indices) -> Indices:
+        key = np.minimum(a, b) * n + np.maximum(a, b)
+        return order[np.searchsorted(keys, key, sorter=order)]
+
+    return np.stack([edge_index(before, centre), edge_index(centre, after)], axis=1)
+
+
+def _chains(n: int, links: Indices) -> tuple[Indices, Indices, np.ndarray]:
+    """Chain of each edge, rank within it, and for each chain whether it is closed.
+
+    The rank is the number of steps from the chain's first edge: the smaller of its two ends, or
+    the smallest edge of a loop, which is cut open behind it.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components, dijkstra
+
+    def graph(pairs: Indices) -> coo_matrix:
+        ones = np.ones(len(pairs), dtype=np.int8)
+        return coo_matrix((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n)).tocsr()
+
+    count, chain = connected_components(graph(links), directed=False)
+    degree = np.bincount(links.ravel(), minlength=n)
+    edges = np.arange(n)
+    end = np.full(count, n)
+    np.minimum.at(end, chain[degree < 2], edges[degree < 2])
+    closed = end == n
+    smallest = np.full(count, n)
+    np.minimum.at(smallest, chain, edges)
+    start = np.where(closed, smallest, end)
+    cut = _one_link_each(links, start[closed])
+    steps = dijkstra(
+        graph(np.delete(links, cut, axis=0)),
+        directed=False,
+        indices=start,
+        unweighted=True,
+        min_only=True,
+    )
+    return chain, steps.astype(np.int64), closed
+
+
+def _one_link_each(links: Indices, loop_starts: Indices) -> Indices:
+    """For each loop, the first link at its starting edge: where it is cut open."""
+    touching = np.isin(links, loop_starts)
+    rows = np.flatnonzero(touching.any(axis=1))
+    owner = np.where(touching[rows, 0], links[rows, 0], links[rows, 1])
+    _, first = np.unique(owner, return_index=True)
+    return rows[first]
+
+
+def _split(chain: Indices, rank: Indices) -> list[Indices]:
+    order = np.lexsort((rank, chain))
+    return np.split(order, np.flatnonzero(np.diff(chain[order])) + 1)
+
+
+def _walk(edges: Indices, closed: bool) -> Indices:
+    """Vertices met along edges in order, (k,)."""
+    if len(edges) == 1:
+        return np.asarray(edges[0])
+    a, b = edges[:-1], edges[1:]
+    shared = np.where((a[:, :1] == b).any(axis=1), a[:, 0], a[:, 1])
+    start = edges[0].sum() - shared[0]
+    end = edges[-1].sum() - shared[-1]
+    return np.r_[start, shared] if closed else np.r_[start, shared, end]

@@ -1,0 +1,31 @@
+"""Design surfaces: the protocol a net is kept close to, and exact surfaces given by formula."""
+
+from gridshell.surface.analytic import AnalyticSurface, Domain
+from gridshell.surface.analytic_revolution import (
+    Catenoid,
+    Hyperboloid,
+    RevolutionSurface,
+    Sphere,
+    Torus,
+)
+from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
+from gridshell.surface.forms import Derivatives
+from gridshell.surface.surface import Foot, Surface, checked_points
+
+__all__ = [
+    "AnalyticSurface",
+    "Catenoid",
+    "Derivatives",
+    "Domain",
+    "Enneper",
+    "Foot",
+    "Helicoid",
+    "Hypar",
+    "Hyperboloid",
+    "RevolutionSurface",
+    "Scherk",
+    "Sphere",
+    "Surface",
+    "Torus",
+    "checked_points",
+]
