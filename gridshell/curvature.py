@@ -9,9 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from gridshell.arrays import Floats, Indices, Points, Vectors, unit
-from gridshell.mesh import QuadMesh
+from gridshell.errors import NotHyperbolicError
+from gridshell.mesh import QuadMesh, position
 
 _LEAST_SAMPLES = 14
+_FLAT = 1e-8
+_TOLERATED = 0.01
 
 
 def principal_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats]:
@@ -35,6 +38,33 @@ def principal_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats]:
         gradient = np.concatenate([-jet[:, :2], np.ones((len(jet), 1))], axis=1)
         normals = unit(np.einsum("mi,mic->mc", gradient, frames))
     return centre, _curvatures(jet) / size[:, 0]
+
+
+def require_hyperbolic(mesh: QuadMesh) -> None:
+    """Refuse a mesh that is not negatively curved: it carries no asymptotic directions.
+
+    Up to one vertex in a hundred may fail, which is noise and not shape.
+
+    Raises
+    ------
+    NotHyperbolicError
+        Naming the vertex of largest Gaussian curvature.
+    """
+    vertices, kappa = principal_curvatures(mesh)
+    if len(vertices) == 0:
+        return
+    gauss = kappa[:, 0] * kappa[:, 1]
+    failing = gauss * mesh.mean_edge**2 > -_FLAT
+    if failing.mean() > _TOLERATED:
+        worst = int(np.argmax(gauss))
+        v = int(vertices[worst])
+        raise NotHyperbolicError(
+            "An asymptotic net needs negative Gaussian curvature",
+            where=f"vertex {v} {position(mesh.vertices[v])}",
+            value=f"{gauss[worst]:.3g} 1/mm2, and {failing.mean():.0%} of the vertices fail",
+            limit="below 0",
+            advice="a saddle-shaped part of the surface, or a planar-quad net",
+        )
 
 
 def vertex_normals(mesh: QuadMesh) -> Vectors:

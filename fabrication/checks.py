@@ -1,0 +1,119 @@
+"""Checks of a structure against its material and its own cuts. Loads and buckling are not checked.
+
+Limits (t thickness, h width, E modulus, f strength, G = E / 2.6):
+
+* bending about the weak axis: radius >= E t / (2 f)
+* twist (St Venant): rate <= f / (sqrt(3) G t)
+* bending about the strong axis: stress E kappa_n h / 2 <= f; zero on an exact asymptotic net
+* slots: material of at least one thickness between two slots and beside the cut ends
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from fabrication.finding import Finding, Severity
+from fabrication.lamella import Lamella
+from fabrication.parts import FlatPart
+from fabrication.stock import Profile
+from fabrication.structures import Structure
+
+_SAMPLES_PER_BAY = 8
+_SHEAR_RATIO = 2.6
+
+
+def check(structure: Structure, parts: Sequence[FlatPart]) -> tuple[Finding, ...]:
+    """All findings about lamellas and flat parts, in the structure's order."""
+    found: list[Finding] = []
+    for lamella, part in zip(structure.lamellas, parts, strict=True):
+        found += _bending(lamella, structure.profile)
+        found += _slots(part)
+        if lamella.closed:
+            found.append(_seam(lamella))
+    return tuple(found)
+
+
+def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
+    material = profile.material
+    s = np.linspace(0.0, lamella.stations[-1], _SAMPLES_PER_BAY * len(lamella.nodes) + 1)
+    weak, strong = (float(np.abs(k).max()) for k in lamella.bending(s))
+    radius = np.inf if weak == 0.0 else 1.0 / weak
+    smallest = material.modulus * profile.thickness / (2.0 * material.strength)
+    if radius < smallest:
+        thickest = profile.thickness * radius / smallest
+        yield Finding(
+            "bend-radius",
+            Severity.ERROR,
+            lamella.mark,
+            radius,
+            smallest,
+            f"{lamella.mark} bends to a radius of {radius:.0f} mm; {material.name} of "
+            f"{profile.thickness:g} mm needs {smallest:.0f} mm. At most {thickest:.2f} mm thick.",
+        )
+    rate = float(np.abs(lamella.twist(s)).max())
+    shear = material.modulus / _SHEAR_RATIO
+    fastest = material.strength / (np.sqrt(3.0) * shear * profile.thickness)
+    if rate > fastest:
+        yield Finding(
+            "twist",
+            Severity.ERROR,
+            lamella.mark,
+            rate,
+            fastest,
+            f"{lamella.mark} twists by {np.degrees(rate) * 1000:.0f} degrees per metre; "
+            f"{material.name} of {profile.thickness:g} mm bears "
+            f"{np.degrees(fastest) * 1000:.0f}. Use a thinner strip.",
+        )
+    stress = material.modulus * strong * profile.width / 2.0
+    if stress > material.strength / 2.0:
+        yield Finding(
+            "edgewise-bend",
+            Severity.ERROR if stress > material.strength else Severity.WARNING,
+            lamella.mark,
+            stress,
+            material.strength,
+            f"{lamella.mark} must bend about its strong axis: {stress:.0f} N/mm2. The net is not "
+            "asymptotic enough there: optimise further, or use a narrower strip.",
+        )
+
+
+def _slots(part: FlatPart) -> Iterator[Finding]:
+    for a, b in pairwise(part.slots):
+        web = (b.x - b.width / 2.0) - (a.x + a.width / 2.0)
+        if web < part.thickness:
+            yield Finding(
+                "slot-spacing",
+                Severity.ERROR,
+                f"{part.mark} {a.node}-{b.node}",
+                web,
+                part.thickness,
+                f"Only {web:.2f} mm are left between the slots for {a.partner} and {b.partner} in "
+                f"{part.mark}. Use fewer lamellas or a thinner strip.",
+            )
+    for slot in part.slots[:1] + part.slots[-1:]:
+        web = min(slot.x, part.length - slot.x) - slot.width / 2.0
+        if web < part.thickness:
+            yield Finding(
+                "slot-at-end",
+                Severity.ERROR,
+                f"{part.mark} {slot.node}",
+                web,
+                part.thickness,
+                f"The slot for {slot.partner} leaves {web:.2f} mm at the end of {part.mark}. "
+                "Use a longer overhang.",
+            )
+
+
+def _seam(lamella: Lamella) -> Finding:
+    return Finding(
+        "seam",
+        Severity.INFO,
+        lamella.mark,
+        lamella.axis.length,
+        lamella.length,
+        f"{lamella.mark} is closed: its ends meet half-way between its last and its first node "
+        "and need a splice there.",
+    )

@@ -1,0 +1,1 @@
+"""Files a shop opens: DXF sheets, STEP, lists and reports."""

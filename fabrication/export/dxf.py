@@ -1,0 +1,148 @@
+"""DXF cutting sheets: the only module that imports ezdxf.
+
+Layers: CUT holds one closed outline per part and nothing else; MARK holds single-stroke text to
+engrave; TEXT repeats it as text for people and is not cut. Units are mm, the format is R2010,
+curves are lines. Part strip coordinates (0, 0) lie at the outline's first corner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+from ezdxf import units
+from ezdxf.enums import TextEntityAlignment
+from ezdxf.layouts import Modelspace
+from HersheyFonts import HersheyFonts
+
+from fabrication.errors import OutputError
+from fabrication.nesting import NestedSheet, Placement
+from fabrication.parts import Label
+from gridshell import FileError
+from gridshell.arrays import Floats
+
+CUT, MARK, TEXT, SHEET = "CUT", "MARK", "TEXT", "SHEET"
+_LAYERS = {CUT: 1, MARK: 5, TEXT: 8, SHEET: 9}
+_APPLICATION = "GRIDSHELL"
+
+
+def write_dxf(sheets: Sequence[NestedSheet], folder: Path | str) -> list[Path]:
+    """Write ``sheet-01.dxf``, ... into *folder* and return their paths.
+
+    Raises
+    ------
+    OutputError
+        When a file cannot be written.
+    """
+    folder = Path(folder)
+    font = _StrokeFont()
+    digits = max(2, len(str(len(sheets))))
+    paths = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for nested in sheets:
+            path = folder / f"sheet-{nested.number:0{digits}d}.dxf"
+            _document(nested, font).saveas(path)
+            paths.append(path)
+    except OSError as error:
+        raise OutputError(
+            "The sheets cannot be written", where=str(folder), value=error.strerror or ""
+        ) from None
+    return paths
+
+
+def _document(nested: NestedSheet, font: _StrokeFont) -> ezdxf.document.Drawing:
+    document = ezdxf.new("R2010", units=units.MM)
+    document.appids.add(_APPLICATION)
+    for name, colour in _LAYERS.items():
+        document.layers.add(name, color=colour)
+    document.layers.get(SHEET).dxf.plot = 0
+    space = document.modelspace()
+    sheet = nested.sheet
+    corners = [(0.0, 0.0), (sheet.length, 0.0), (sheet.length, sheet.width), (0.0, sheet.width)]
+    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": SHEET})
+    for placement in nested.placements:
+        _draw(space, placement, font)
+    return document
+
+
+def _draw(space: Modelspace, placement: Placement, font: _StrokeFont) -> None:
+    part, offset = placement.part, np.array([placement.x, placement.y])
+    contour = space.add_lwpolyline(
+        (part.outline + offset).tolist(), close=True, dxfattribs={"layer": CUT}
+    )
+    contour.set_xdata(_APPLICATION, [(1000, part.mark)])
+    for label in part.labels:
+        for stroke in font.strokes(label):
+            points = (stroke + offset).tolist()
+            space.add_lwpolyline(points, dxfattribs={"layer": MARK})
+        text = space.add_text(label.text, height=label.height, dxfattribs={"layer": TEXT})
+        text.set_placement(
+            (label.x + offset[0], label.y + offset[1]), align=TextEntityAlignment.MIDDLE_CENTER
+        )
+
+
+class _StrokeFont:
+    """Single-stroke capitals and digits."""
+
+    def __init__(self) -> None:
+        self._font = HersheyFonts()
+        self._font.load_default_font("futural")
+        self._font.normalize_rendering(1.0)
+        self._cache: dict[str, list[Floats]] = {}
+
+    def strokes(self, label: Label) -> list[Floats]:
+        """Polylines (k, 2) of a label, centred on its position, in strip coordinates."""
+        if label.text not in self._cache:
+            self._cache[label.text] = self._centred(label.text)
+        here = np.array([label.x, label.y])
+        return [stroke * label.height + here for stroke in self._cache[label.text]]
+
+    def _centred(self, text: str) -> list[Floats]:
+        strokes = [np.array(s, dtype=np.float64) for s in self._font.strokes_for_text(text)]
+        strokes = [stroke for stroke in strokes if len(stroke) > 1]
+        everything = np.concatenate(strokes)
+        middle = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
+        return [stroke - middle for stroke in strokes]
+
+
+@dataclass(frozen=True, eq=False)
+class DxfPart:
+    """What a sheet says of one part.
+
+    Parameters
+    ----------
+    mark : from the outline's extended data.
+    outline : (k, 2) mm, moved so that its first corner is (0, 0).
+    """
+
+    mark: str
+    outline: Floats
+
+
+def read_dxf(path: Path | str) -> tuple[DxfPart, ...]:
+    """Read the parts of a sheet back from the file.
+
+    Raises
+    ------
+    FileError
+        When the file is missing, is no DXF, is not in mm, or holds an outline that is open or
+        has no mark.
+    """
+    try:
+        document = ezdxf.readfile(path)
+    except (OSError, ezdxf.DXFError) as error:
+        raise FileError("The sheet cannot be read", where=str(path), value=str(error)) from None
+    if document.units != units.MM:
+        raise FileError("The sheet is not in mm", where=str(path), value=f"{document.units}")
+    parts = []
+    for entity in document.modelspace().query(f'LWPOLYLINE[layer=="{CUT}"]'):
+        if not entity.closed or not entity.has_xdata(_APPLICATION):
+            raise FileError("An outline is open or has no mark", where=f"{path}, {entity.dxf.handle}")
+        points = np.array(entity.get_points("xy"), dtype=np.float64)
+        mark = next(str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000)
+        parts.append(DxfPart(mark, points - points[0]))
+    return tuple(parts)

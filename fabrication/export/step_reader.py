@@ -1,0 +1,231 @@
+"""Lamellas read back from a STEP file, straight from its entities.
+
+The general import heals every shape it meets, which takes minutes for a large assembly and would
+hide what it mends. Here the file's own surfaces and loops are taken as they are written: the two
+large ruled faces of each solid, and the corners of the loop that trims them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.STEPControl import STEPControl_Reader
+from OCP.StepGeom import StepGeom_BSplineSurfaceWithKnots
+from OCP.StepShape import StepShape_ManifoldSolidBrep, StepShape_ShapeDefinitionRepresentation
+from scipy.interpolate import BSpline, CubicHermiteSpline
+
+from fabrication.export.step import quiet
+from gridshell import FileError
+from gridshell.arrays import Floats
+
+_NEWTON_STEPS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class RuledSide:
+    """A large face: straight rulings between two splines of one parameter u.
+
+    Parameters
+    ----------
+    lower, upper : the edges of the untrimmed face, mm.
+    width : of the second parameter v, which runs from lower to upper, mm.
+    """
+
+    lower: BSpline
+    upper: BSpline
+    width: float
+
+    def points(self, u: Floats, v: Floats) -> Floats:
+        """Positions (n, 3)."""
+        share = (np.asarray(v) / self.width)[..., None]
+        return np.asarray((1.0 - share) * self.lower(u) + share * self.upper(u))
+
+    def slopes(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Derivatives by u and by v, each (n, 3)."""
+        share = (np.asarray(v) / self.width)[..., None]
+        by_u = (1.0 - share) * self.lower(u, 1) + share * self.upper(u, 1)
+        return by_u, (self.upper(u) - self.lower(u)) / self.width
+
+    def parameters(self, points: Floats) -> Floats:
+        """(n, 2) parameters of *points* on the face: nearest sample, then Newton."""
+        samples = np.linspace(self.lower.t[0], self.lower.t[-1], 4 * len(self.lower.c))
+        middle = self.points(samples, np.full_like(samples, self.width / 2.0))
+        nearest = np.argmin(np.linalg.norm(points[:, None] - middle, axis=2), axis=1)
+        uv = np.stack([samples[nearest], np.full(len(points), self.width / 2.0)], axis=1)
+        for _ in range(_NEWTON_STEPS):
+            offset = points - self.points(uv[:, 0], uv[:, 1])
+            slopes = np.stack(self.slopes(uv[:, 0], uv[:, 1]), axis=2)
+            gram = np.einsum("nci,ncj->nij", slopes, slopes)
+            right = np.einsum("nci,nc->ni", slopes, offset)
+            uv = uv + np.linalg.solve(gram, right[..., None])[..., 0]
+        return uv
+
+
+@dataclass(frozen=True, eq=False)
+class StepPart:
+    """What a STEP file says of one lamella.
+
+    Parameters
+    ----------
+    mark : the product's name.
+    near, far : the two large faces, with common parameters.
+    loop : (k, 2) parameters of the corners of the near face's trimming loop.
+    """
+
+    mark: str
+    near: RuledSide
+    far: RuledSide
+    loop: Floats
+
+    @cached_property
+    def middle(self) -> RuledSide:
+        """The ruled surface half-way between the faces."""
+        lower = BSpline(self.near.lower.t, (self.near.lower.c + self.far.lower.c) / 2.0, 3)
+        upper = BSpline(self.near.upper.t, (self.near.upper.c + self.far.upper.c) / 2.0, 3)
+        return RuledSide(lower, upper, self.near.width)
+
+    def place(self, x: Floats, y: Floats) -> Floats:
+        """Lay points (x, y) of a flat strip along the middle surface: positions (n, 3).
+
+        x is measured along the middle line from its start, whatever the file's parameters say.
+        """
+        return self.middle.points(self._arc(inverse=True)(x), y)
+
+    def unrolled_loop(self) -> Floats:
+        """(k, 2) the trimming loop on the flat strip: arc length along the middle line, v."""
+        return np.stack([self._arc(inverse=False)(self.loop[:, 0]), self.loop[:, 1]], axis=1)
+
+    def volume(self) -> float:
+        """Volume between the faces over the loop, by Gauss quadrature, mm3."""
+        u, v, weight = _comb_quadrature(self.loop, np.unique(self.near.lower.t))
+        total = 0.0
+        for share, part in zip((leggauss(3)[0] + 1.0) / 2.0, leggauss(3)[1] / 2.0, strict=True):
+            a, b = self.near.slopes(u, v), self.far.slopes(u, v)
+            by_u, by_v = ((1.0 - share) * p + share * q for p, q in zip(a, b, strict=True))
+            across = self.far.points(u, v) - self.near.points(u, v)
+            density = np.einsum("nc,nc->n", np.cross(by_u, by_v), across)
+            total += part * float(density @ weight)
+        return abs(total)
+
+    def _arc(self, *, inverse: bool) -> CubicHermiteSpline:
+        """Arc length of the middle line by parameter, or the other way round."""
+        line = BSpline(self.near.lower.t, (self.middle.lower.c + self.middle.upper.c) / 2.0, 3)
+        knots = np.unique(line.t)
+        stops = (knots[:-1, None] + np.diff(knots)[:, None] * np.arange(4) / 4.0).ravel()
+        stops = np.r_[stops, knots[-1]]
+        nodes, weights = leggauss(6)
+        half = np.diff(stops)[:, None] / 2.0
+        inside = np.linalg.norm(line(stops[:-1, None] + half * (1.0 + nodes), 1), axis=2)
+        arc = np.r_[0.0, np.cumsum((inside * half) @ weights)]
+        speed = np.linalg.norm(line(stops, 1), axis=1)
+        if inverse:
+            return CubicHermiteSpline(arc, stops, 1.0 / speed)
+        return CubicHermiteSpline(stops, arc, speed)
+
+
+def read_step(path: Path | str) -> tuple[StepPart, ...]:
+    """Read the lamellas of an assembly, in the file's order.
+
+    Raises
+    ------
+    FileError
+        When the file is missing, cannot be read, or a solid has no two large ruled faces.
+    """
+    quiet()
+    if not Path(path).is_file():
+        raise FileError("The STEP file is missing", where=str(path))
+    reader = STEPControl_Reader()
+    if reader.ReadFile(str(path)) != IFSelect_RetDone:
+        raise FileError("The STEP file cannot be read", where=str(path))
+    return tuple(_part(path, name, brep) for name, brep in _named_solids(reader.StepModel()))
+
+
+def _named_solids(model: Any) -> Iterator[tuple[str, Any]]:
+    for i in range(1, model.NbEntities() + 1):
+        entity = model.Entity(i)
+        if not isinstance(entity, StepShape_ShapeDefinitionRepresentation):
+            continue
+        definition = entity.Definition().PropertyDefinition().Definition().ProductDefinition()
+        name = definition.Formation().OfProduct().Name().ToCString()
+        representation = entity.UsedRepresentation()
+        for k in range(1, representation.NbItems() + 1):
+            item = representation.ItemsValue(k)
+            if isinstance(item, StepShape_ManifoldSolidBrep):
+                yield name, item
+
+
+def _part(path: Path | str, name: str, brep: Any) -> StepPart:
+    shell = brep.Outer()
+    sides = []
+    for face in (shell.CfsFacesValue(i) for i in range(1, shell.NbCfsFaces() + 1)):
+        surface = face.FaceGeometry()
+        if isinstance(surface, StepGeom_BSplineSurfaceWithKnots) and surface.VDegree() == 1:
+            sides.append((_ruled(surface), face))
+    sides.sort(key=lambda s: (s[0].lower.t[-1] - s[0].lower.t[0]) * s[0].width, reverse=True)
+    if len(sides) < 2 or not np.array_equal(sides[0][0].lower.t, sides[1][0].lower.t):
+        raise FileError("A solid has no two large ruled faces", where=f"{path}, {name}")
+    (near, face), (far, _) = sides[:2]
+    return StepPart(name, near, far, near.parameters(_loop_corners(face)))
+
+
+def _ruled(surface: Any) -> RuledSide:
+    u = np.repeat(
+        [surface.UKnotsValue(i) for i in range(1, surface.NbUKnots() + 1)],
+        [surface.UMultiplicitiesValue(i) for i in range(1, surface.NbUKnots() + 1)],
+    )
+    v = [surface.VKnotsValue(i) for i in range(1, surface.NbVKnots() + 1)]
+    rows = range(1, surface.NbControlPointsListI() + 1)
+    edges = [
+        BSpline(
+            u, np.array([_xyz(surface.ControlPointsListValue(i, j)) for i in rows]), surface.UDegree()
+        )
+        for j in (1, surface.NbControlPointsListJ())
+    ]
+    return RuledSide(edges[0], edges[1], v[-1] - v[0])
+
+
+def _loop_corners(face: Any) -> Floats:
+    loop = face.BoundsValue(1).Bound()
+    corners = []
+    for i in range(1, loop.NbEdgeList() + 1):
+        oriented = loop.EdgeListValue(i)
+        edge = oriented.EdgeElement()
+        vertex = edge.EdgeStart() if oriented.Orientation() else edge.EdgeEnd()
+        corners.append(_xyz(vertex.VertexGeometry()))
+    return np.array(corners)
+
+
+def _xyz(point: Any) -> list[float]:
+    return [point.CoordinatesValue(i) for i in (1, 2, 3)]
+
+
+def _comb_quadrature(loop: Floats, knots: Floats) -> tuple[Floats, Floats, Floats]:
+    """Gauss points and weights over an axis-parallel loop, column by column.
+
+    Columns end where the loop turns and at the knots of the faces; inside a column the loop is a
+    set of intervals of v.
+    """
+    following = np.roll(loop, -1, axis=0)
+    flat = np.abs(following[:, 1] - loop[:, 1]) < np.abs(following[:, 0] - loop[:, 0])
+    low, high = np.sort(np.stack([loop[flat, 0], following[flat, 0]]), axis=0)
+    level = (loop[flat, 1] + following[flat, 1]) / 2.0
+    inside = knots[(knots > loop[:, 0].min()) & (knots < loop[:, 0].max())]
+    stops = np.unique(np.r_[loop[:, 0], inside])
+    nodes, weights = leggauss(4)
+    us, vs, ws = [], [], []
+    for a, b in zip(stops[:-1], stops[1:], strict=True):
+        middle = (a + b) / 2.0
+        crossed = np.sort(level[(low < middle) & (high > middle)])
+        for c, d in zip(crossed[::2], crossed[1::2], strict=False):
+            u, v = np.meshgrid((a + b + (b - a) * nodes) / 2, (c + d + (d - c) * nodes) / 2)
+            us.append(u.ravel())
+            vs.append(v.ravel())
+            ws.append((np.outer(weights, weights) * (b - a) * (d - c) / 4.0).ravel())
+    return np.concatenate(us), np.concatenate(vs), np.concatenate(ws)

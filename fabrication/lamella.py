@@ -1,0 +1,162 @@
+"""A lamella: a straight flat strip, bent and twisted so that it stands on the surface.
+
+Its axis is a smooth curve through the net's nodes (not-a-knot cubic spline; a closed one where the
+lamella is closed), parametrised by its own arc length, so that a station on the axis is a station
+on the flat strip. Along the axis runs a frame: tangent t, surface normal n, and b = n x t across
+the strip's thickness. A point of the strip has coordinates (s, y, z): arc length along the axis,
+distance along b, height along n.
+
+Do not confuse: *station* s is measured from the first node, *x* from the strip's cut end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from scipy.interpolate import CubicSpline
+
+from gridshell.arrays import Floats, Indices, Points, Vectors, frozen, unit
+
+_GAUSS_X, _GAUSS_W = leggauss(8)
+_REPARAMETRISATIONS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class AxisCurve:
+    """A smooth curve through points, parametrised by arc length at the points.
+
+    Parameters
+    ----------
+    spline : position by station, mm.
+    stations : (k,) arc length at the points; a closed curve has one more for its return.
+    closed : whether the curve returns to its first point.
+    """
+
+    spline: CubicSpline
+    stations: Floats
+    closed: bool
+
+    @property
+    def length(self) -> float:
+        """Arc length from the first to the last point, or all around, mm."""
+        return float(self.stations[-1])
+
+    def tangents(self, s: Floats) -> Vectors:
+        """Unit tangents at stations *s* (n,)."""
+        return unit(self.spline(s, 1))
+
+
+def axis_curve(points: Points, *, closed: bool) -> AxisCurve:
+    """The axis through *points* (k, 3), k >= 2 (3 when closed).
+
+    Chord sums fall short of the arc by s^3 / (24 R^2) per bay; here the knots are moved until
+    they equal the arc lengths of the curve itself.
+    """
+    through = np.vstack([points, points[:1]]) if closed else np.asarray(points)
+    knots = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(through, axis=0), axis=1))]
+    boundary = "periodic" if closed else "not-a-knot"
+    spline = CubicSpline(knots, through, bc_type=boundary)
+    for _ in range(_REPARAMETRISATIONS):
+        arcs = np.r_[0.0, np.cumsum(_arc_lengths(spline, knots))]
+        moved = np.abs(arcs - knots).max()
+        knots = arcs
+        spline = CubicSpline(knots, through, bc_type=boundary)
+        if moved <= 1e-10 * arcs[-1]:
+            break
+    return AxisCurve(spline, frozen(knots), closed)
+
+
+def _arc_lengths(spline: CubicSpline, knots: Floats) -> Floats:
+    """(k - 1,) arc length between neighbouring knots, by Gauss quadrature."""
+    half = np.diff(knots)[:, None] / 2.0
+    s = (knots[:-1, None] + half) + half * _GAUSS_X
+    return np.asarray((np.linalg.norm(spline(s, 1), axis=2) * half) @ _GAUSS_W)
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """Frames along an axis: rows of points and right-handed unit vectors t, b, n."""
+
+    points: Points
+    t: Vectors
+    b: Vectors
+    n: Vectors
+
+
+@dataclass(frozen=True, eq=False)
+class Lamella:
+    """One strip.
+
+    Parameters
+    ----------
+    mark : "A1", "A2", ... in family 1, "B1", ... in family 2.
+    family : 1 or 2.
+    nodes : (k,) node numbers in order along the axis.
+    axis : its curve through the nodes.
+    normals : direction of the strip's width by station; perpendicular to the axis at the nodes.
+    start, end : stations of the two cut ends; the strip overhangs its end nodes, or stops short.
+    """
+
+    mark: str
+    family: int
+    nodes: Indices
+    axis: AxisCurve
+    normals: CubicSpline
+    start: float
+    end: float
+
+    @property
+    def length(self) -> float:
+        """Developed length of the flat strip, mm."""
+        return self.end - self.start
+
+    @property
+    def closed(self) -> bool:
+        """Whether the two cut ends meet in a seam."""
+        return self.axis.closed
+
+    @cached_property
+    def stations(self) -> Floats:
+        """(k,) station of each node."""
+        return self.axis.stations[: len(self.nodes)]
+
+    def frames(self, s: Floats) -> Frames:
+        """Frames at stations *s* (n,)."""
+        s = np.asarray(s, dtype=np.float64)
+        t = self.axis.tangents(s)
+        n = self.normals(s)
+        n = unit(n - np.einsum("nc,nc->n", n, t)[:, None] * t)
+        return Frames(np.asarray(self.axis.spline(s)), t, np.cross(n, t), n)
+
+    def place(self, s: Floats, y: Floats, z: Floats) -> Points:
+        """Strip coordinates (n,) each to positions (n, 3), mm."""
+        f = self.frames(s)
+        return np.asarray(f.points + np.asarray(y)[:, None] * f.b + np.asarray(z)[:, None] * f.n)
+
+    def twist(self, s: Floats) -> Floats:
+        """Rate of turn of the frame about the axis, dn/ds . b, at stations *s*, rad/mm.
+
+        Along an asymptotic curve its square is the negative Gaussian curvature (Beltrami and
+        Enneper), with opposite signs in the two families.
+        """
+        step = 1e-4 * max(self.axis.length, 1.0)
+        before, after = self.frames(np.asarray(s) - step), self.frames(np.asarray(s) + step)
+        b = self.frames(s).b
+        return np.einsum("nc,nc->n", after.n - before.n, b) / (2.0 * step)
+
+    def bending(self, s: Floats) -> tuple[Floats, Floats]:
+        """Curvature about the weak axis (within the surface) and about the strong one, 1/mm.
+
+        The first bends the thin strip, as built. The second is the normal curvature of the axis:
+        zero on an asymptotic curve, and what a straight strip cannot follow elsewhere.
+        """
+        first, second = self.axis.spline(s, 1), self.axis.spline(s, 2)
+        speed = np.einsum("nc,nc->n", first, first)
+        f = self.frames(s)
+        return (
+            np.einsum("nc,nc->n", second, f.b) / speed,
+            np.einsum("nc,nc->n", second, f.n) / speed,
+        )

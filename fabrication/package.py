@@ -1,0 +1,354 @@
+"""From a project to the folder a shop gets: every stage once, in order.
+
+Files are written into a folder beside the target and moved in at the end, so a run that fails
+leaves nothing half-written behind.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from math import degrees, radians
+from pathlib import Path
+from typing import Any
+
+import fabrication.stock as stock
+import gridshell as gs
+from fabrication.checks import check
+from fabrication.errors import OutputError
+from fabrication.finding import Finding, Severity
+from fabrication.fitting import Fit, fit
+from fabrication.joints import SlotJoint
+from fabrication.nesting import NestedSheet, nest
+from fabrication.parts import FlatPart, flat_parts
+from fabrication.project import AsymptoticPatchSection, MeshSection, Project
+from fabrication.structures import Structure, structure
+
+CLOSURE_LIMIT = 0.05
+"""Largest distance between the files and the design that passes, mm."""
+
+VOLUME_LIMIT = 20.0
+"""Largest difference between flat area times thickness and the solid's volume, ppm."""
+
+CLASH_LIMIT = 1e-3
+"""Largest volume two strips may share at a node, mm3."""
+
+Report = dict[str, Any]
+Announce = Callable[[str], None]
+
+_SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
+    "enneper": gs.Enneper,
+    "catenoid": gs.Catenoid,
+    "helicoid": gs.Helicoid,
+    "hypar": gs.Hypar,
+    "hyperboloid": gs.Hyperboloid,
+    "scherk": gs.Scherk,
+    "torus": gs.Torus,
+    "sphere": gs.Sphere,
+}
+_ANCHORS: dict[str, gs.Anchor] = {
+    "free": gs.Free(),
+    "boundary-pinned": gs.BoundaryPinned(),
+    "boundary-glide": gs.BoundaryGlide(),
+}
+
+
+@dataclass
+class _Clock:
+    """Announces stages and keeps their times."""
+
+    announce: Announce
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        self.announce(name)
+        start = time.perf_counter()
+        yield
+        self.seconds[name] = round(time.perf_counter() - start, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class _Design:
+    """Everything that is known before a file is written."""
+
+    control: gs.ControlMesh
+    net: gs.DiagonalMesh
+    structure: Structure
+    parts: tuple[FlatPart, ...]
+    sheets: tuple[NestedSheet, ...]
+
+
+def run(
+    project: Project,
+    out: Path | str,
+    *,
+    folder: Path | str = ".",
+    announce: Announce = lambda stage: None,
+) -> Report:
+    """Design, build and write the package of *project* into *out*.
+
+    Parameters
+    ----------
+    project : from ``read_project``.
+    out : created if it is not there; files of an earlier run are replaced, others are kept.
+    folder : what file names in the project are relative to.
+    announce : called with the name of each stage as it begins.
+
+    Returns
+    -------
+    The content of ``report.json``.
+
+    Raises
+    ------
+    InputError
+        When the project asks for something that cannot be made; each names what and where.
+    SolveError
+        When no net is found near the start.
+    OutputError
+        When *out* cannot be written.
+    """
+    out = Path(out)
+    clock = _Clock(announce)
+    with _beside(out) as draft:
+        report = _write(project, _design(project, Path(folder), clock), draft, clock)
+        _move_in(draft, out)
+    return report
+
+
+# ---- design ------------------------------------------------------------------------------------
+
+
+def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Report, list[Finding]]:
+    with clock.stage("start mesh"):
+        control, surface = start(project, folder)
+    with clock.stage("optimise"):
+        result = _optimise(project, control, surface).require()
+    with clock.stage("structure"):
+        skin = gs.diagonal_meshes(result.control)[0 if project.net.skin == "D1" else 1]
+        built = structure(skin, _profile(project), overhang=project.profile.overhang)
+    with clock.stage("parts"):
+        joint = SlotJoint(project.joint.clearance, project.joint.depth_clearance)
+        parts = flat_parts(built, joint)
+        sheet = stock.Sheet(**project.sheet.model_dump())
+        sheets = nest(parts, sheet)
+        findings = [*joint.findings(built), *check(built, parts)]
+    design = _Design(result.control, skin, built, parts, sheets)
+    return design, _net_report(result, clock.seconds["optimise"]), findings
+
+
+def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.AnalyticSurface | None]:
+    """The control mesh a project begins with, and its surface where it has one.
+
+    Raises
+    ------
+    InputError
+        When the surface or the mesh does not carry the net that is asked for.
+    """
+    source = project.source
+    if isinstance(source, MeshSection):
+        return _mesh_start(source, folder), None
+    sizes = source.surface.model_dump()
+    surface = _SURFACES[sizes.pop("kind")](**sizes)
+    patch = source.patch
+    layout: gs.Patch
+    if isinstance(patch, AsymptoticPatchSection):
+        layout = gs.AsymptoticPatch(patch.p, patch.q, patch.lamellas)
+    else:
+        layout = gs.BisectingPatch(patch.v, patch.cells, patch.u)
+    return gs.control_patch(surface, layout), surface
+
+
+def _mesh_start(section: MeshSection, folder: Path) -> gs.ControlMesh:
+    mesh = gs.read_obj(folder / section.file, unit=gs.Unit.named(section.unit))
+    along_edges = section.lamellas_along == "edges"
+    control = gs.control_mesh(mesh) if along_edges else gs.as_control_mesh(mesh)
+    gs.require_hyperbolic(control.mesh)
+    return control
+
+
+def _optimise(
+    project: Project, control: gs.ControlMesh, surface: gs.AnalyticSurface | None
+) -> gs.OptimizedNet:
+    net = project.net
+    angle = None if net.angle is None else radians(net.angle)
+    recipe = gs.a_net(angle=angle, steps=net.steps, tolerance=net.tolerance)
+    reference = surface if net.keep_to_surface else None
+    return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
+
+
+def _profile(project: Project) -> stock.Profile:
+    section = project.profile
+    if isinstance(section.material, str):
+        material = stock.MATERIALS[section.material]
+    else:
+        material = stock.Material(**section.material.model_dump())
+    return stock.Profile(section.width, section.thickness, material)
+
+
+# ---- files -------------------------------------------------------------------------------------
+
+
+def _write(
+    project: Project,
+    designed: tuple[_Design, Report, list[Finding]],
+    draft: Path,
+    clock: _Clock,
+) -> Report:
+    from fabrication.export.dxf import write_dxf
+    from fabrication.export.schedule import mass, write_schedule
+
+    design, net_report, findings = designed
+    with clock.stage("fit"):
+        fitted = fit(design.structure, design.parts)
+    with clock.stage("sheets"):
+        gs.write_net(draft / "net.json", design.control)
+        gs.write_obj(draft / "net.obj", design.control.mesh, unit=gs.Unit.MM)
+        sheet_files = write_dxf(design.sheets, draft / "sheets")
+        material = design.structure.profile.material
+        write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
+    closed = _write_solids(project, design, sheet_files, draft, clock)
+    findings += _loop_findings(closed, fitted)
+    report: Report = {
+        "name": project.name,
+        "net": net_report,
+        "structure": {
+            "lamellas": len(design.structure.lamellas),
+            "nodes": len(design.structure.nodes),
+            "joints": fitted.nodes,
+            "total_length_m": round(sum(p.length for p in design.parts) / 1000.0, 3),
+            "mass_kg": round(sum(mass(p, material) for p in design.parts), 2),
+            "max_edgewise_mm": max(p.development.edgewise for p in design.parts),
+            "max_edge_strain": max(p.development.edge_strain for p in design.parts),
+            "sheets": len(design.sheets),
+        },
+        "closure": closed,
+        "fit": {
+            "clash_mm3": {"max": fitted.max_mm3},
+            "worst": fitted.worst,
+            "nodes": fitted.nodes,
+        },
+        "findings": [{**asdict(f), "severity": f.severity.value} for f in findings],
+        "timing": clock.seconds,
+    }
+    _write_reports(project, design, report, draft, clock)
+    return report
+
+
+def _write_solids(
+    project: Project, design: _Design, sheet_files: list[Path], draft: Path, clock: _Clock
+) -> Report:
+    with clock.stage("CAD kernel"):
+        from fabrication.loop import closure
+        from fabrication.export.step import assembly, write_step
+        from fabrication.solid import solids
+    with clock.stage("solids"):
+        bodies = solids(design.structure, design.parts)
+    with clock.stage("STEP"):
+        whole = assembly(bodies, design.structure, name=project.name)
+        write_step(whole, draft / "structure.step")
+    with clock.stage("closure"):
+        skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
+        net = skins[0 if project.net.skin == "D1" else 1]
+        step = draft / "structure.step"
+        return asdict(closure(design.structure, design.parts, net, sheet_files, step))
+
+
+def _write_reports(
+    project: Project, design: _Design, report: Report, draft: Path, clock: _Clock
+) -> None:
+    from fabrication.export.report import write_report
+
+    with clock.stage("report"):
+        write_report(
+            draft / "report.html",
+            name=project.name,
+            report=report,
+            structure=design.structure,
+            parts=design.parts,
+        )
+    text = json.dumps(report, indent=2, allow_nan=False)
+    (draft / "report.json").write_text(text + "\n", encoding="utf-8")
+
+
+def _net_report(result: gs.OptimizedNet, seconds: float) -> Report:
+    quality = result.quality
+    low, high = quality.edge_ratio
+    angle_low, angle_high = quality.node_angle_deg
+    return {
+        "kind": "asymptotic",
+        "vertices": int((result.control.mesh.valence > 0).sum()),
+        "faces": len(result.control.quads),
+        "iterations": len(result.steps),
+        "seconds": seconds,
+        "status": result.status,
+        "angle_error_deg": quality.angle_error_deg and asdict(quality.angle_error_deg),
+        "node_angle_deg": {"min": angle_low, "max": angle_high},
+        "star_planarity": asdict(quality.star_planarity),
+        "edge_ratio": {"min": low, "max": high},
+        "surface_distance_mm": quality.surface_distance_mm and asdict(quality.surface_distance_mm),
+        "curvature_ratio": quality.curvature_ratio,
+    }
+
+
+def _loop_findings(closed: Report, fitted: Fit) -> list[Finding]:
+    """Errors where the files do not close back onto the design or the strips do not fit."""
+    measures = (
+        ("closure", closed["worst"], closed["max_mm"], CLOSURE_LIMIT, "mm from the design"),
+        ("volume", "all", closed["volume_ppm"], VOLUME_LIMIT, "ppm between sheet and solid"),
+        ("clash", fitted.worst, fitted.max_mm3, CLASH_LIMIT, "mm3 shared by two strips"),
+    )
+    return [
+        Finding(code, Severity.ERROR, where, value, limit, f"{value:.4g} {what}, {limit:g} allowed")
+        for code, where, value, limit, what in measures
+        if value > limit
+    ]
+
+
+# ---- folders -----------------------------------------------------------------------------------
+
+
+@contextmanager
+def _beside(out: Path) -> Iterator[Path]:
+    """A fresh folder beside *out*, gone afterwards whatever happens."""
+    if out.exists() and not out.is_dir():
+        raise OutputError(
+            "The output folder is a file", where=str(out), advice="another name after --out"
+        )
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        draft = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
+        if out.is_dir():
+            probe = Path(tempfile.mkdtemp(prefix=".probe-", dir=out))
+            probe.rmdir()
+    except OSError as error:
+        raise OutputError(
+            "The output folder cannot be written",
+            where=str(out),
+            value=error.strerror or type(error).__name__,
+            advice="a folder you may write to",
+        ) from None
+    try:
+        yield draft
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _move_in(draft: Path, out: Path) -> None:
+    """Replace in *out* what *draft* holds; everything else there stays."""
+    try:
+        out.mkdir(exist_ok=True)
+        for entry in sorted(draft.iterdir()):
+            target = out / entry.name
+            if target.is_dir() and not target.is_symlink():
+                shutil.rmtree(target)
+            entry.replace(target)
+    except OSError as error:
+        raise OutputError(
+            "The output folder cannot be written", where=str(out), value=error.strerror or ""
+        ) from None

@@ -1,0 +1,389 @@
+"""Solids: the only module that imports the CAD kernel (build123d and OCP).
+
+A slotted, bent and twisted lamella is built directly as a boundary representation, without any
+boolean operation. Each side of the strip is a B-spline surface of degree 3 x 1 between two corner
+curves; its parameters (u, v) are the strip's own (x, y) in mm, so the flat outline is literally
+the trimming loop of the surface. Every vertex and edge is made once and shared by its two faces,
+which makes the solid watertight by construction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
+
+from fabrication.errors import KernelError
+from fabrication.lamella import Lamella
+from fabrication.parts import FlatPart
+from fabrication.structures import Structure
+from gridshell.arrays import Floats, unit
+
+try:
+    import build123d
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepCheck import BRepCheck_Analyzer
+    from OCP.BRepGProp import BRepGProp
+    from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface, Geom_Line, Geom_Plane
+    from OCP.Geom2d import Geom2d_Line
+    from OCP.gp import gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
+    from OCP.GProp import GProp_GProps
+    from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+    from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import (
+        TopoDS,
+        TopoDS_Edge,
+        TopoDS_Face,
+        TopoDS_Shell,
+        TopoDS_Solid,
+        TopoDS_Vertex,
+        TopoDS_Wire,
+    )
+except ImportError as error:  # pragma: no cover - depends on the machine
+    raise KernelError(
+        "The CAD kernel cannot be loaded",
+        value=str(error),
+        advice="install the project again; on a bare Linux also the system package libgl1",
+    ) from error
+
+_TOLERANCE = 1e-6
+_VOLUME_ACCURACY = 1e-7
+_SAMPLES_PER_BAY = 2
+COLOURS = {1: (0.80, 0.52, 0.25), 2: (0.36, 0.47, 0.58)}
+"""sRGB colours of families 1 and 2."""
+
+
+def solids(structure: Structure, parts: Sequence[FlatPart]) -> list[build123d.Solid]:
+    """One labelled, coloured solid per lamella, in the structure's order.
+
+    Raises
+    ------
+    KernelError
+        When the kernel does not find a solid valid; the lamella is named.
+    """
+    made = []
+    for lamella, part in zip(structure.lamellas, parts, strict=True):
+        solid = build123d.Solid(lamella_solid(lamella, part))
+        solid.label = lamella.mark
+        solid.color = build123d.Color(*COLOURS[lamella.family])
+        made.append(solid)
+    return made
+
+
+def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
+    """The bent and twisted strip with its slots.
+
+    Raises
+    ------
+    KernelError
+        When the kernel does not find it valid.
+    """
+    solid = _Builder(_sides(lamella, part), part.thickness).solid(part.outline)
+    if not BRepCheck_Analyzer(solid, True, True).IsValid():
+        raise KernelError(
+            "The kernel refuses a lamella's solid",
+            where=lamella.mark,
+            advice="look for overlapping slots among the findings",
+        )
+    return solid
+
+
+def volume(shape: Any) -> float:
+    """Volume of a kernel shape, mm3; the kernel's default integration is 1e-4 off on twisted strips."""
+    properties = GProp_GProps()
+    BRepGProp.VolumePropertiesGK_s(shape, properties, _VOLUME_ACCURACY, True)
+    return float(properties.Mass())
+
+
+# ---- the two sides of a strip as splines -----------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """A side of the strip: lower and upper corner curve with the same knots, v = 0 .. width."""
+
+    knots: Floats
+    lower: Floats
+    upper: Floats
+    width: float
+
+    def points(self, u: Floats, v: Floats) -> Floats:
+        """Positions (n, 3) at parameters *u*, *v*."""
+        share = (np.asarray(v) / self.width)[:, None]
+        lower = BSpline(self.knots, self.lower, 3)(u)
+        return np.asarray((1.0 - share) * lower + share * BSpline(self.knots, self.upper, 3)(u))
+
+
+def _sides(lamella: Lamella, part: FlatPart) -> tuple[_Side, _Side]:
+    """The sides at +t/2 and -t/2 across; u is x on the flat strip."""
+    u = _sample_stations(lamella) - lamella.start
+    half_t, half_h = part.thickness / 2.0, part.width / 2.0
+    corners = [(y, z) for y in (half_t, -half_t) for z in (-half_h, half_h)]
+
+    def corner_curves(x: Floats) -> Floats:
+        s = x + lamella.start
+        f = lamella.frames(s)
+        return np.concatenate([f.points + y * f.b + z * f.n for y, z in corners], axis=1)
+
+    step = 1e-3 * part.length / len(u)
+    ends = [
+        (corner_curves(np.array([x + step])) - corner_curves(np.array([x - step])))[0] / (2 * step)
+        for x in (u[0], u[-1])
+    ]
+    spline = make_interp_spline(u, corner_curves(u), k=3, bc_type=([(1, ends[0])], [(1, ends[1])]))
+    poles = spline.c.reshape(-1, 4, 3)
+    return tuple(  # type: ignore[return-value]
+        _Side(spline.t, poles[:, 2 * i], poles[:, 2 * i + 1], part.width) for i in (0, 1)
+    )
+
+
+def _sample_stations(lamella: Lamella) -> Floats:
+    """Cut ends, nodes, and points between them in every bay."""
+    inside = lamella.stations[(lamella.stations > lamella.start) & (lamella.stations < lamella.end)]
+    stops = np.unique(np.r_[lamella.start, inside, lamella.end])
+    share = np.arange(_SAMPLES_PER_BAY) / _SAMPLES_PER_BAY
+    between = (stops[:-1, None] + np.diff(stops)[:, None] * share).ravel()
+    return np.r_[between, stops[-1]]
+
+
+# ---- boundary representation ------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Line:
+    """An edge of the outline: runs along u (horizontal) or along v (vertical)."""
+
+    along_u: bool
+    at: float
+    low: float
+    high: float
+    increasing: bool
+
+
+class _Builder:
+    """Makes the shared vertices, edges and faces of one strip."""
+
+    def __init__(self, sides: tuple[_Side, _Side], thickness: float) -> None:
+        self.sides, self.thickness = sides, thickness
+        self.tool = BRep_Builder()
+        self.tolerance = _TOLERANCE
+        self.surfaces = [_side_surface(side) for side in sides]
+
+    def solid(self, outline: Floats) -> TopoDS_Solid:
+        """The solid over *outline* (k, 2), counter-clockwise with axis-parallel edges."""
+        corners = [side.points(outline[:, 0], outline[:, 1]) for side in self.sides]
+        lines = [_outline_line(outline, i) for i in range(len(outline))]
+        self.tolerance = _wall_tolerance(corners, lines)
+        vertices = [[self._vertex(p) for p in points] for points in corners]
+        across = [
+            self._straight(corners[0][i], corners[1][i], vertices[0][i], vertices[1][i])
+            for i in range(len(outline))
+        ]
+        rims = [
+            [self._rim(k, line, corners[k], vertices[k], i) for i, line in enumerate(lines)]
+            for k in (0, 1)
+        ]
+        faces = [self._side_face(k, lines, rims[k]) for k in (0, 1)]
+        for i, line in enumerate(lines):
+            near, far = rims[0][i], rims[1][i]
+            low, high = across[i], across[(i + 1) % len(outline)]
+            if not line.increasing:
+                low, high = high, low
+            if line.along_u:
+                surface = self._edge_surface(line, near, far, low, high)
+            else:
+                surface = _plane(corners, i, line)
+            wire = self._wire([(near, True), (high, True), (far, False), (low, False)])
+            faces.append(self._face(surface, wire, forward=line.increasing))
+        return self._close(faces)
+
+    def _vertex(self, point: Floats) -> TopoDS_Vertex:
+        vertex = TopoDS_Vertex()
+        self.tool.MakeVertex(vertex, gp_Pnt(*map(float, point)), self.tolerance)
+        return vertex
+
+    def _edge(
+        self, curve: Any, first: TopoDS_Vertex, last: TopoDS_Vertex, low: float, high: float
+    ) -> TopoDS_Edge:
+        edge = TopoDS_Edge()
+        self.tool.MakeEdge(edge, curve, self.tolerance)
+        self.tool.Add(edge, first.Oriented(TopAbs_FORWARD))
+        self.tool.Add(edge, last.Oriented(TopAbs_REVERSED))
+        self.tool.Range(edge, low, high)
+        return edge
+
+    def _straight(
+        self, a: Floats, b: Floats, first: TopoDS_Vertex, last: TopoDS_Vertex
+    ) -> TopoDS_Edge:
+        length = float(np.linalg.norm(b - a))
+        direction = gp_Dir(*map(float, (b - a) / length))
+        return self._edge(Geom_Line(gp_Pnt(*map(float, a)), direction), first, last, 0.0, length)
+
+    def _rim(
+        self, k: int, line: _Line, corners: Floats, vertices: Sequence[TopoDS_Vertex], i: int
+    ) -> TopoDS_Edge:
+        """The edge over *line* on side *k*, in the direction of the growing parameter."""
+        following = (i + 1) % len(vertices)
+        a, b = (i, following) if line.increasing else (following, i)
+        if line.along_u:
+            curve = self.surfaces[k].VIso(line.at)
+            curve.Segment(line.low, line.high)
+            edge = self._edge(curve, vertices[a], vertices[b], line.low, line.high)
+            self._trace(edge, self.surfaces[k], (0.0, line.at), (1.0, 0.0))
+        else:
+            edge = self._straight(corners[a], corners[b], vertices[a], vertices[b])
+            self._trace(edge, self.surfaces[k], (line.at, line.low), (0.0, 1.0))
+        return edge
+
+    def _edge_surface(
+        self,
+        line: _Line,
+        near: TopoDS_Edge,
+        far: TopoDS_Edge,
+        low: TopoDS_Edge,
+        high: TopoDS_Edge,
+    ) -> Geom_BSplineSurface:
+        """The ruled surface over a horizontal *line*; w runs from side 0 to side 1."""
+        curves = []
+        for surface in self.surfaces:
+            curve = surface.VIso(line.at)
+            curve.Segment(line.low, line.high)
+            curves.append(curve)
+        surface = _ruled_surface(curves[0], curves[1], self.thickness)
+        self._trace(near, surface, (0.0, 0.0), (1.0, 0.0))
+        self._trace(far, surface, (0.0, self.thickness), (1.0, 0.0))
+        self._trace(low, surface, (line.low, 0.0), (0.0, 1.0))
+        self._trace(high, surface, (line.high, 0.0), (0.0, 1.0))
+        return surface
+
+    def _trace(
+        self,
+        edge: TopoDS_Edge,
+        surface: Any,
+        origin: tuple[float, float],
+        direction: tuple[float, float],
+    ) -> None:
+        """Give *edge* its line in the parameters of *surface*."""
+        line = Geom2d_Line(gp_Pnt2d(*origin), gp_Dir2d(*direction))
+        self.tool.UpdateEdge(edge, line, surface, TopLoc_Location(), self.tolerance)
+
+    def _side_face(
+        self, k: int, lines: Sequence[_Line], rims: Sequence[TopoDS_Edge]
+    ) -> TopoDS_Face:
+        """Side 0 (+t/2) faces along b against its natural normal, side 1 with it."""
+        wire = self._wire([(e, line.increasing) for e, line in zip(rims, lines, strict=True)])
+        return self._face(self.surfaces[k], wire, forward=k == 1)
+
+    def _wire(self, edges: Sequence[tuple[TopoDS_Edge, bool]]) -> TopoDS_Wire:
+        wire = TopoDS_Wire()
+        self.tool.MakeWire(wire)
+        for edge, forward in edges:
+            self.tool.Add(wire, edge.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
+        wire.Closed(True)
+        return wire
+
+    def _face(self, surface: Any, wire: TopoDS_Wire, *, forward: bool) -> TopoDS_Face:
+        face = TopoDS_Face()
+        self.tool.MakeFace(face, surface, _TOLERANCE)
+        self.tool.Add(face, wire)
+        return face if forward else TopoDS.Face_s(face.Reversed())
+
+    def _close(self, faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:
+        shell, solid = TopoDS_Shell(), TopoDS_Solid()
+        self.tool.MakeShell(shell)
+        for face in faces:
+            self.tool.Add(shell, face)
+        shell.Closed(True)
+        self.tool.MakeSolid(solid)
+        self.tool.Add(solid, shell)
+        return solid
+
+
+def _outline_line(outline: Floats, i: int) -> _Line:
+    a, b = outline[i], outline[(i + 1) % len(outline)]
+    along_u = abs(b[0] - a[0]) > abs(b[1] - a[1])
+    runs, fixed = (0, 1) if along_u else (1, 0)
+    low, high = sorted((float(a[runs]), float(b[runs])))
+    return _Line(along_u, float(a[fixed]), low, high, bool(b[runs] > a[runs]))
+
+
+# ---- geometry in the kernel's types -------------------------------------------------------------
+
+
+def _knots(
+    values: Sequence[float], counts: Sequence[int]
+) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
+    reals = TColStd_Array1OfReal(1, len(values))
+    integers = TColStd_Array1OfInteger(1, len(values))
+    for i, (value, count) in enumerate(zip(values, counts, strict=True), start=1):
+        reals.SetValue(i, value)
+        integers.SetValue(i, count)
+    return reals, integers
+
+
+def _plane(corners: Sequence[Floats], i: int, line: _Line) -> Geom_Plane:
+    """The plane of a vertical wall, its normal in the direction of the strip."""
+    middle, normal, _ = _wall_planes(corners, [i])
+    sign = 1.0 if line.increasing else -1.0
+    direction = gp_Dir(*map(float, sign * normal[0]))
+    return Geom_Plane(gp_Pnt(*map(float, middle[0])), direction)
+
+
+def _wall_planes(corners: Sequence[Floats], walls: Sequence[int]) -> tuple[Floats, Floats, Floats]:
+    """Middles, normals out of the material and largest offsets of the walls' four corners."""
+    near, far = corners
+    first = np.asarray(walls)
+    second = (first + 1) % len(near)
+    points = np.stack([near[first], near[second], far[second], far[first]], axis=1)
+    middle = points.mean(axis=1)
+    normal = unit(np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1]))
+    offset = np.abs(np.einsum("mkc,mc->mk", points - middle[:, None], normal)).max(axis=1)
+    return middle, normal, offset
+
+
+def _wall_tolerance(corners: Sequence[Floats], lines: Sequence[_Line]) -> float:
+    """A tolerance that covers what walls are out of plane and rulings off their length.
+
+    Both come from interpolating the corner curves and stay around 1e-6 mm.
+    """
+    walls = [i for i, line in enumerate(lines) if not line.along_u]
+    _, _, offset = _wall_planes(corners, walls)
+    heights = np.array([lines[i].high - lines[i].low for i in walls])
+    stretch = [
+        np.abs(np.linalg.norm(side[(np.array(walls) + 1) % len(side)] - side[walls], axis=1) - heights)
+        for side in corners
+    ]
+    return max(_TOLERANCE, 2.0 * float(offset.max()), 2.0 * float(np.max(stretch)))
+
+
+def _side_surface(side: _Side) -> Geom_BSplineSurface:
+    points = TColgp_Array2OfPnt(1, len(side.lower), 1, 2)
+    for column, poles in enumerate((side.lower, side.upper), start=1):
+        for row, pole in enumerate(poles.tolist(), start=1):
+            points.SetValue(row, column, gp_Pnt(*pole))
+    values, counts = np.unique(side.knots, return_counts=True)
+    u, u_counts = _knots(values.tolist(), counts.tolist())
+    v, v_counts = _knots((0.0, side.width), (2, 2))
+    return Geom_BSplineSurface(points, u, v, u_counts, v_counts, 3, 1)
+
+
+def _ruled_surface(
+    near: Geom_BSplineCurve, far: Geom_BSplineCurve, thickness: float
+) -> Geom_BSplineSurface:
+    """Between two curves with the same knots; the second parameter runs from 0 to *thickness*."""
+    count = near.NbPoles()
+    points = TColgp_Array2OfPnt(1, count, 1, 2)
+    for column, curve in enumerate((near, far), start=1):
+        for row in range(1, count + 1):
+            points.SetValue(row, column, curve.Pole(row))
+    w, w_counts = _knots((0.0, thickness), (2, 2))
+    u = TColStd_Array1OfReal(1, near.NbKnots())
+    u_counts = TColStd_Array1OfInteger(1, near.NbKnots())
+    near.Knots(u)
+    near.Multiplicities(u_counts)
+    return Geom_BSplineSurface(points, u, w, u_counts, w_counts, near.Degree(), 1)

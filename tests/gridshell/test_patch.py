@@ -1,0 +1,174 @@
+import numpy as np
+import pytest
+
+import gridshell as gs
+from gridshell.curvature import vertex_normals
+
+HYPAR = gs.Hypar(2000.0)
+WIDE = gs.AsymptoticPatch(p=(-1.0, 1.0), q=(-0.5, 0.8), lamellas=(4, 6))
+
+PATCHES = {
+    "hypar": (HYPAR, WIDE),
+    "Enneper": (gs.Enneper(4000.0), gs.BisectingPatch(u=(-0.7, 0.7), v=(-0.7, 0.7), cells=14)),
+    "catenoid, open": (gs.Catenoid(900.0), gs.BisectingPatch(u=(0.0, 2.0), v=(-1, 1), cells=12)),
+    "catenoid, ring": (gs.Catenoid(900.0), gs.BisectingPatch(v=(-1.0, 1.0), cells=20)),
+    "helicoid": (gs.Helicoid(5000.0), gs.AsymptoticPatch((-1.0, 1.0), (0.0, 3.0), (5, 5))),
+}
+
+
+@pytest.fixture(params=PATCHES)
+def surface_and_control(request):
+    surface, patch = PATCHES[request.param]
+    return surface, gs.control_patch(surface, patch)
+
+
+def test_all_vertices_lie_on_the_surface(surface_and_control):
+    surface, control = surface_and_control
+    distance = np.linalg.norm(surface.closest(control.vertices).points - control.vertices, axis=1)
+    assert distance.max() < 1e-6
+
+
+def test_quads_face_the_side_of_the_normal(surface_and_control):
+    surface, control = surface_and_control
+    normals = surface.closest(control.vertices).normals
+    assert np.einsum("nc,nc->n", normals, vertex_normals(control.mesh)).min() > 0.5
+
+
+# ---- asymptotic patches ---------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def asymptotic_net():
+    return gs.diagonal_meshes(gs.control_patch(HYPAR, WIDE))[0]
+
+
+def test_the_nodes_lie_at_equal_steps_of_the_asymptotic_parameters(asymptotic_net):
+    p, q = np.meshgrid(np.linspace(-1.0, 1.0, 6), np.linspace(-0.5, 0.8, 4))
+    expected = HYPAR.asymptotic_point(p.ravel(), q.ravel())
+    found = asymptotic_net.vertices
+    gaps = np.linalg.norm(found[:, None] - expected[None], axis=2)
+    assert len(found) == len(expected)
+    assert gaps.min(axis=1).max() < 1e-9
+
+
+def test_every_lamella_runs_from_edge_to_edge(asymptotic_net):
+    """Four along p meet six nodes each, six along q meet four."""
+    lengths = sorted(len(line.vertices) for line in gs.polylines(asymptotic_net))
+    assert lengths == [4] * 6 + [6] * 4
+
+
+def test_family_one_runs_along_p(asymptotic_net):
+    """On the hyperbolic paraboloid p = x / scale and q = y / scale."""
+    for line in gs.polylines(asymptotic_net):
+        x, y, _ = asymptotic_net.vertices[line.vertices].T
+        across = y if line.family == 1 else x
+        np.testing.assert_allclose(across, across[0], atol=1e-9)
+
+
+# ---- bisecting patches ----------------------------------------------------------------------
+
+
+def test_the_paper_sized_patch_has_1440_quads(enneper):
+    assert len(enneper(36).quads) == 36 * 40
+
+
+def test_the_number_across_follows_from_the_number_along():
+    """Steps of 1.4 / 14 = 0.1: a width of 0.96 is widened to ten steps, 0.92 narrowed to nine."""
+    for width, across in ((0.96, 10), (0.92, 9)):
+        patch = gs.BisectingPatch(u=(-0.7, 0.7), v=(0.0, width), cells=14)
+        assert len(gs.control_patch(gs.Enneper(4000.0), patch).quads) == 14 * across
+
+
+def test_the_width_is_changed_evenly_on_both_sides():
+    patch = gs.BisectingPatch(u=(-0.7, 0.7), v=(0.1, 0.5 + 0.03), cells=14)
+    control = gs.control_patch(gs.Enneper(4000.0), patch)
+    v = 0.315 + 0.1 * np.array([-2, -1, 0, 1, 2])
+    expected = gs.Enneper(4000.0).point(np.full(5, -0.7), v)
+    np.testing.assert_allclose(control.vertices[:5], expected, rtol=1e-12)
+
+
+def test_a_narrow_patch_is_at_least_two_quads_wide():
+    patch = gs.BisectingPatch(u=(-0.7, 0.7), v=(0.0, 0.01), cells=14)
+    assert len(gs.control_patch(gs.Enneper(4000.0), patch).quads) == 14 * 2
+
+
+def test_without_u_the_patch_closes_into_a_ring():
+    control = gs.control_patch(*PATCHES["catenoid, ring"])
+    assert control.mesh.euler_characteristic == 0
+    assert len(control.mesh.boundary_loops[0]) == 20
+
+
+# ---- what is refused ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "limits", [(1.0, 1.0), (1.0, 0.0), (np.nan, 1.0), (0.0, np.nan), (0.0, np.inf), (-np.inf, 0.0)]
+)
+@pytest.mark.parametrize("key", ["p", "q", "u", "v"])
+def test_an_empty_or_endless_range_is_refused_by_its_key(key, limits):
+    layout, count = (
+        (gs.AsymptoticPatch, {"lamellas": (3, 3)})
+        if key in "pq"
+        else (gs.BisectingPatch, {"cells": 4})
+    )
+    other = {"p": "q", "q": "p", "u": "v", "v": "u"}[key]
+    with pytest.raises(gs.SettingError, match="smaller first") as info:
+        layout(**{key: limits, other: (0.0, 1.0)}, **count)
+    assert info.value.where == key
+    assert info.value.value == str(list(limits))
+
+
+@pytest.mark.parametrize("lamellas", [(1, 3), (3, 1), (0, 0), (-2, 5)])
+def test_fewer_than_two_lamellas_are_refused(lamellas):
+    with pytest.raises(gs.SettingError, match="Too few") as info:
+        gs.AsymptoticPatch(p=(0.0, 1.0), q=(0.0, 1.0), lamellas=lamellas)
+    assert (info.value.where, info.value.limit) == ("lamellas", ">= 2")
+
+
+@pytest.mark.parametrize("cells", [1, 0, -3])
+def test_fewer_than_two_cells_are_refused(cells):
+    with pytest.raises(gs.SettingError, match="Too few") as info:
+        gs.BisectingPatch(u=(0.0, 1.0), v=(0.0, 1.0), cells=cells)
+    assert info.value.where == "cells"
+
+
+@pytest.mark.parametrize(("cells", "advice"), [(2, "4 cells"), (3, "4 cells"), (7, "8 cells")])
+def test_a_ring_of_an_odd_or_too_small_number_is_refused_with_the_next_one(cells, advice):
+    with pytest.raises(gs.SettingError, match="even number of cells") as info:
+        gs.BisectingPatch(v=(0.0, 1.0), cells=cells)
+    assert (info.value.value, info.value.advice) == (str(cells), advice)
+
+
+def test_an_odd_number_is_fine_where_the_patch_is_open():
+    assert gs.BisectingPatch(u=(0.0, 1.0), v=(0.0, 1.0), cells=7).cells == 7
+
+
+@pytest.mark.parametrize("surface", [gs.Enneper(4000.0), HYPAR, gs.Helicoid(5000.0)])
+def test_a_ring_on_an_open_surface_is_refused_by_its_name(surface):
+    with pytest.raises(gs.SettingError, match="does not close") as info:
+        gs.control_patch(surface, gs.BisectingPatch(v=(-0.5, 0.5), cells=8))
+    assert (info.value.where, info.value.value) == ("u", type(surface).__name__)
+
+
+@pytest.mark.parametrize(
+    "patch",
+    [
+        gs.AsymptoticPatch(p=(-0.5, 0.5), q=(-0.5, 0.5), lamellas=(3, 3)),
+        gs.BisectingPatch(v=(-0.5, 0.5), cells=8),
+    ],
+)
+def test_a_sphere_has_no_asymptotic_directions(patch):
+    with pytest.raises(gs.NotHyperbolicError):
+        gs.control_patch(gs.Sphere(1000.0), patch)
+
+
+def test_a_patch_beyond_the_formula_is_refused():
+    with pytest.raises(gs.SettingError, match="infinity"):
+        gs.control_patch(gs.Hyperboloid(900.0, 900.0), gs.BisectingPatch(v=(-2.0, 2.0), cells=20))
+
+
+def test_the_rim_of_half_a_bay_must_lie_on_the_surface_too():
+    """Nodes reach v = 1.5; the teeth around them reach pi / 2, where the rulings are endless."""
+    patch = gs.AsymptoticPatch(p=(0.0, 1.5), q=(-1.5, 0.0), lamellas=(4, 4))
+    with pytest.raises(gs.SettingError, match="infinity"):
+        gs.control_patch(gs.Hyperboloid(900.0, 900.0), patch)
