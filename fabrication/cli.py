@@ -99,7 +99,8 @@ def _run_with_progress(project: Any, out: Path, folder: Path, quiet: bool) -> di
 
     console = Console(stderr=True, quiet=quiet)
     columns = (TextColumn("{task.description:<12}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as progress:
+    silent = quiet or not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=silent) as progress:
         task = progress.add_task("loading", total=_STAGES)
         from fabrication.package import run as run_package
 

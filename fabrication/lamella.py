@@ -22,6 +22,7 @@ from gridshell.arrays import Floats, Indices, Points, Vectors, frozen, unit
 
 _GAUSS_X, _GAUSS_W = leggauss(8)
 _REPARAMETRISATIONS = 12
+_SAMPLES_PER_BAY = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +50,12 @@ class AxisCurve:
         return unit(self.spline(s, 1))
 
 
-def axis_curve(points: Points, *, closed: bool) -> AxisCurve:
+def axis_curve(points: Points, *, closed: bool, reach: float = 0.0) -> AxisCurve:
     """The axis through *points* (k, 3), k >= 2 (3 when closed).
 
     Chord sums fall short of the arc by s^3 / (24 R^2) per bay; here the knots are moved until
-    they equal the arc lengths of the curve itself.
+    they equal the arc lengths of the curve itself. The curve is then resampled by arc length, so
+    that stations are true between the nodes as well, and over *reach* mm beyond both ends.
     """
     through = np.vstack([points, points[:1]]) if closed else np.asarray(points)
     knots = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(through, axis=0), axis=1))]
@@ -66,7 +68,23 @@ def axis_curve(points: Points, *, closed: bool) -> AxisCurve:
         spline = CubicSpline(knots, through, bc_type=boundary)
         if moved <= 1e-10 * arcs[-1]:
             break
-    return AxisCurve(spline, frozen(knots), closed)
+    return _resampled(spline, knots, closed=closed, reach=0.0 if closed else reach)
+
+
+def _resampled(spline: CubicSpline, knots: Floats, *, closed: bool, reach: float) -> AxisCurve:
+    share = np.arange(_SAMPLES_PER_BAY) / _SAMPLES_PER_BAY
+    dense = np.r_[(knots[:-1, None] + np.diff(knots)[:, None] * share).ravel(), knots[-1]]
+    if reach > 0.0:
+        dense = np.r_[-reach, -reach / 2.0, dense, knots[-1] + reach / 2.0, knots[-1] + reach]
+    arcs = np.r_[0.0, np.cumsum(_arc_lengths(spline, dense))]
+    arcs -= arcs[2] if reach > 0.0 else 0.0
+    through = spline(dense)
+    if closed:
+        through[-1] = through[0]
+    by_arc = CubicSpline(arcs, through, bc_type="periodic" if closed else "not-a-knot")
+    first = 2 if reach > 0.0 else 0
+    stations = arcs[first::_SAMPLES_PER_BAY][: len(knots)]
+    return AxisCurve(by_arc, frozen(stations), closed)
 
 
 def _arc_lengths(spline: CubicSpline, knots: Floats) -> Floats:
@@ -145,7 +163,7 @@ class Lamella:
         step = 1e-4 * max(self.axis.length, 1.0)
         before, after = self.frames(np.asarray(s) - step), self.frames(np.asarray(s) + step)
         b = self.frames(s).b
-        return np.einsum("nc,nc->n", after.n - before.n, b) / (2.0 * step)
+        return np.asarray(np.einsum("nc,nc->n", after.n - before.n, b) / (2.0 * step))
 
     def bending(self, s: Floats) -> tuple[Floats, Floats]:
         """Curvature about the weak axis (within the surface) and about the strong one, 1/mm.

@@ -133,4 +133,4 @@ def _node_distances(
         placed = solid.place(x, np.full_like(x, share * width))
         wanted = positions + (share - 0.5) * width * axes
         offsets.append(np.linalg.norm(placed - wanted, axis=1))
-    return np.max(offsets, axis=0)
+    return np.asarray(np.max(offsets, axis=0))

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
-from math import degrees, radians
+from math import radians
 from pathlib import Path
 from typing import Any
 
@@ -244,8 +244,8 @@ def _write_solids(
     project: Project, design: _Design, sheet_files: list[Path], draft: Path, clock: _Clock
 ) -> Report:
     with clock.stage("CAD kernel"):
-        from fabrication.loop import closure
         from fabrication.export.step import assembly, write_step
+        from fabrication.loop import closure
         from fabrication.solid import solids
     with clock.stage("solids"):
         bodies = solids(design.structure, design.parts)

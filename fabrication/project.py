@@ -55,7 +55,7 @@ class HyparSurface(_Section):
 
 
 class HyperboloidSurface(_Section):
-    """Hyperboloid of one sheet: waist *radius*, *height* = slope of the asymptotic cone times it."""
+    """Hyperboloid of one sheet: waist *radius*, z = *height* times tan v."""
 
     kind: Literal["hyperboloid"]
     radius: Positive
@@ -271,6 +271,7 @@ def _sections() -> dict[str, type[_Section]]:
         "MaterialSection": MaterialSection,
     }
     for union in (SurfaceSection, PatchSection):
+        section: type[_Section]
         for section in get_args(get_args(union)[0]):
             tag = section.model_fields.get("kind") or section.model_fields["layout"]
             named[get_args(tag.annotation)[0]] = section
@@ -282,7 +283,7 @@ def _key(location: tuple[int | str, ...]) -> str:
     fields = {name for section in (Project, *_sections().values()) for name in section.model_fields}
     *path, last = location or ("",)
     shown = [part for part in path if isinstance(part, int) or part in fields]
-    branch = last in _sections() and last not in fields or str(last).startswith("literal[")
+    branch = (last in _sections() and last not in fields) or str(last).startswith("literal[")
     return ".".join(str(part) for part in (shown if branch else [*shown, last]))
 
 

@@ -31,7 +31,7 @@ try:
     from OCP.Geom2d import Geom2d_Line
     from OCP.gp import gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
     from OCP.GProp import GProp_GProps
-    from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
+    from OCP.TColgp import TColgp_Array2OfPnt
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
     from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
     from OCP.TopLoc import TopLoc_Location
@@ -94,7 +94,7 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
 
 
 def volume(shape: Any) -> float:
-    """Volume of a kernel shape, mm3; the kernel's default integration is 1e-4 off on twisted strips."""
+    """Volume of a kernel shape, mm3; the kernel's default integration is 1e-4 off on strips."""
     properties = GProp_GProps()
     BRepGProp.VolumePropertiesGK_s(shape, properties, _VOLUME_ACCURACY, True)
     return float(properties.Mass())
@@ -148,7 +148,7 @@ def _sample_stations(lamella: Lamella) -> Floats:
     stops = np.unique(np.r_[lamella.start, inside, lamella.end])
     share = np.arange(_SAMPLES_PER_BAY) / _SAMPLES_PER_BAY
     between = (stops[:-1, None] + np.diff(stops)[:, None] * share).ravel()
-    return np.r_[between, stops[-1]]
+    return np.asarray(np.r_[between, stops[-1]])
 
 
 # ---- boundary representation ------------------------------------------------------------------
@@ -355,7 +355,7 @@ def _wall_tolerance(corners: Sequence[Floats], lines: Sequence[_Line]) -> float:
     _, _, offset = _wall_planes(corners, walls)
     heights = np.array([lines[i].high - lines[i].low for i in walls])
     stretch = [
-        np.abs(np.linalg.norm(side[(np.array(walls) + 1) % len(side)] - side[walls], axis=1) - heights)
+        np.abs(np.linalg.norm(np.roll(side, -1, axis=0)[walls] - side[walls], axis=1) - heights)
         for side in corners
     ]
     return max(_TOLERANCE, 2.0 * float(offset.max()), 2.0 * float(np.max(stretch)))

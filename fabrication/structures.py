@@ -65,7 +65,10 @@ def structure(net: DiagonalMesh, profile: Profile, *, overhang: float | None = N
             advice=f"{profile.width / 2.0:g} mm, half the strip's width",
         )
     lines = _in_order(net, polylines(net))
-    axes = [axis_curve(net.vertices[line.vertices], closed=line.closed) for line in lines]
+    axes = [
+        axis_curve(net.vertices[line.vertices], closed=line.closed, reach=overhang)
+        for line in lines
+    ]
     node_axes, tangents = _node_axes(net, lines, axes)
     lamellas = _lamellas(net, lines, axes, node_axes, profile, overhang)
     return Structure(lamellas, _nodes(net, lamellas, node_axes, tangents), profile)
@@ -102,8 +105,7 @@ def _in_order(net: DiagonalMesh, lines: tuple[Polyline, ...]) -> list[Polyline]:
 def _node_axes(
     net: DiagonalMesh, lines: list[Polyline], axes: list[AxisCurve]
 ) -> tuple[Vectors, Floats]:
-    """(n, 3) node axes and (n, 2, 3) tangents per family, NaN where none passes
-    or several end."""
+    """(n, 3) node axes and (n, 2, 3) tangents per family, NaN where none passes or several end."""
     tangents = np.full((len(net.vertices), 2, 3), np.nan)
     for line, axis in zip(lines, axes, strict=True):
         at_nodes = axis.tangents(axis.stations[: len(line.vertices)])

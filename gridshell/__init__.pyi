@@ -2,84 +2,194 @@
 
 from .anchors import (
     Anchor as Anchor,
+)
+from .anchors import (
     BoundaryGlide as BoundaryGlide,
+)
+from .anchors import (
     BoundaryPinned as BoundaryPinned,
+)
+from .anchors import (
     Free as Free,
+)
+from .anchors import (
     Pinned as Pinned,
 )
 from .curvature import (
     principal_curvatures as principal_curvatures,
+)
+from .curvature import (
     require_hyperbolic as require_hyperbolic,
 )
 from .errors import (
     ColouringError as ColouringError,
+)
+from .errors import (
     FileError as FileError,
+)
+from .errors import (
     GridshellError as GridshellError,
+)
+from .errors import (
     InputError as InputError,
+)
+from .errors import (
     MeshError as MeshError,
+)
+from .errors import (
     NonManifoldError as NonManifoldError,
+)
+from .errors import (
     NotHyperbolicError as NotHyperbolicError,
+)
+from .errors import (
     OddValenceError as OddValenceError,
+)
+from .errors import (
     OrientationError as OrientationError,
+)
+from .errors import (
     SettingError as SettingError,
+)
+from .errors import (
     SolveError as SolveError,
+)
+from .errors import (
     SurfaceError as SurfaceError,
 )
 from .io import (
     Unit as Unit,
+)
+from .io import (
     read_net as read_net,
+)
+from .io import (
     read_obj as read_obj,
+)
+from .io import (
     write_net as write_net,
+)
+from .io import (
     write_obj as write_obj,
 )
 from .mesh import (
     CheckerboardPattern as CheckerboardPattern,
+)
+from .mesh import (
     ControlMesh as ControlMesh,
+)
+from .mesh import (
     DiagonalMesh as DiagonalMesh,
+)
+from .mesh import (
     Polyline as Polyline,
+)
+from .mesh import (
     QuadMesh as QuadMesh,
+)
+from .mesh import (
     Stars as Stars,
+)
+from .mesh import (
     as_control_mesh as as_control_mesh,
+)
+from .mesh import (
     checkerboard as checkerboard,
+)
+from .mesh import (
     control_mesh as control_mesh,
+)
+from .mesh import (
     diagonal_meshes as diagonal_meshes,
+)
+from .mesh import (
     diagonal_stars as diagonal_stars,
+)
+from .mesh import (
     edge_stars as edge_stars,
+)
+from .mesh import (
     oriented as oriented,
+)
+from .mesh import (
     polylines as polylines,
+)
+from .mesh import (
     two_colouring as two_colouring,
 )
-from .optimization import OptimizedNet as OptimizedNet, optimize as optimize
+from .optimization import OptimizedNet as OptimizedNet
+from .optimization import optimize as optimize
 from .patch import (
     AsymptoticPatch as AsymptoticPatch,
+)
+from .patch import (
     BisectingPatch as BisectingPatch,
+)
+from .patch import (
     Patch as Patch,
+)
+from .patch import (
     control_patch as control_patch,
 )
 from .quality import (
     NetQuality as NetQuality,
+)
+from .quality import (
     Spread as Spread,
+)
+from .quality import (
     net_quality as net_quality,
+)
+from .quality import (
     node_angles as node_angles,
 )
 from .recipes import (
     ANet as ANet,
+)
+from .recipes import (
     PaperANet as PaperANet,
+)
+from .recipes import (
     Recipe as Recipe,
+)
+from .recipes import (
     a_net as a_net,
+)
+from .recipes import (
     paper_a_net as paper_a_net,
 )
-from .solve import Progress as Progress, Step as Step
+from .solve import Progress as Progress
+from .solve import Step as Step
 from .surface import (
     AnalyticSurface as AnalyticSurface,
+)
+from .surface import (
     Catenoid as Catenoid,
+)
+from .surface import (
     Enneper as Enneper,
+)
+from .surface import (
     Foot as Foot,
+)
+from .surface import (
     Helicoid as Helicoid,
+)
+from .surface import (
     Hypar as Hypar,
+)
+from .surface import (
     Hyperboloid as Hyperboloid,
+)
+from .surface import (
     Scherk as Scherk,
+)
+from .surface import (
     Sphere as Sphere,
+)
+from .surface import (
     Surface as Surface,
+)
+from .surface import (
     Torus as Torus,
 )

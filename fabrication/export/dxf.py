@@ -11,11 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import ezdxf
 import numpy as np
 from ezdxf import units
+from ezdxf.document import Drawing
+from ezdxf.entities import LWPolyline
 from ezdxf.enums import TextEntityAlignment
-from ezdxf.layouts import Modelspace
+from ezdxf.filemanagement import new, readfile
+from ezdxf.layouts.layout import Modelspace
+from ezdxf.lldxf.const import DXFError
 from HersheyFonts import HersheyFonts
 
 from fabrication.errors import OutputError
@@ -54,8 +57,8 @@ def write_dxf(sheets: Sequence[NestedSheet], folder: Path | str) -> list[Path]:
     return paths
 
 
-def _document(nested: NestedSheet, font: _StrokeFont) -> ezdxf.document.Drawing:
-    document = ezdxf.new("R2010", units=units.MM)
+def _document(nested: NestedSheet, font: _StrokeFont) -> Drawing:
+    document = new("R2010", units=units.MM)
     document.appids.add(_APPLICATION)
     for name, colour in _LAYERS.items():
         document.layers.add(name, color=colour)
@@ -129,20 +132,24 @@ def read_dxf(path: Path | str) -> tuple[DxfPart, ...]:
     Raises
     ------
     FileError
-        When the file is missing, is no DXF, is not in mm, or holds an outline that is open or
-        has no mark.
+        When the file is missing, is no DXF, is not in mm, or its cutting layer holds something
+        that is not a closed outline with a mark.
     """
     try:
-        document = ezdxf.readfile(path)
-    except (OSError, ezdxf.DXFError) as error:
+        document = readfile(path)
+    except (OSError, DXFError) as error:
         raise FileError("The sheet cannot be read", where=str(path), value=str(error)) from None
     if document.units != units.MM:
         raise FileError("The sheet is not in mm", where=str(path), value=f"{document.units}")
-    parts = []
-    for entity in document.modelspace().query(f'LWPOLYLINE[layer=="{CUT}"]'):
-        if not entity.closed or not entity.has_xdata(_APPLICATION):
-            raise FileError("An outline is open or has no mark", where=f"{path}, {entity.dxf.handle}")
-        points = np.array(entity.get_points("xy"), dtype=np.float64)
-        mark = next(str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000)
-        parts.append(DxfPart(mark, points - points[0]))
-    return tuple(parts)
+    return tuple(_read_part(path, e) for e in document.modelspace().query(f'*[layer=="{CUT}"]'))
+
+
+def _read_part(path: Path | str, entity: object) -> DxfPart:
+    if not (isinstance(entity, LWPolyline) and entity.closed and entity.has_xdata(_APPLICATION)):
+        raise FileError(
+            "Something on the cutting layer is no closed outline with a mark",
+            where=f"{path}, {entity}",
+        )
+    points = np.array(entity.get_points("xy"), dtype=np.float64)
+    mark = next(str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000)
+    return DxfPart(mark, points - points[0])

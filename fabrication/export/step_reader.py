@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -163,16 +164,25 @@ def _named_solids(model: Any) -> Iterator[tuple[str, Any]]:
 
 def _part(path: Path | str, name: str, brep: Any) -> StepPart:
     shell = brep.Outer()
-    sides = []
+    candidates = []
     for face in (shell.CfsFacesValue(i) for i in range(1, shell.NbCfsFaces() + 1)):
         surface = face.FaceGeometry()
         if isinstance(surface, StepGeom_BSplineSurfaceWithKnots) and surface.VDegree() == 1:
-            sides.append((_ruled(surface), face))
-    sides.sort(key=lambda s: (s[0].lower.t[-1] - s[0].lower.t[0]) * s[0].width, reverse=True)
-    if len(sides) < 2 or not np.array_equal(sides[0][0].lower.t, sides[1][0].lower.t):
+            candidates.append((_extent(surface), surface, face))
+    candidates.sort(key=lambda candidate: candidate[0], reverse=True)
+    if len(candidates) < 2:
         raise FileError("A solid has no two large ruled faces", where=f"{path}, {name}")
-    (near, face), (far, _) = sides[:2]
-    return StepPart(name, near, far, near.parameters(_loop_corners(face)))
+    near, far = (_ruled(surface) for _, surface, _ in candidates[:2])
+    if not np.array_equal(near.lower.t, far.lower.t):
+        raise FileError("The two large faces of a solid differ", where=f"{path}, {name}")
+    return StepPart(name, near, far, near.parameters(_loop_corners(candidates[0][2])))
+
+
+def _extent(surface: Any) -> float:
+    """Area of the parameters of a spline surface."""
+    last_u, last_v = surface.NbUKnots(), surface.NbVKnots()
+    u = surface.UKnotsValue(last_u) - surface.UKnotsValue(1)
+    return float(u * (surface.VKnotsValue(last_v) - surface.VKnotsValue(1)))
 
 
 def _ruled(surface: Any) -> RuledSide:
@@ -184,7 +194,9 @@ def _ruled(surface: Any) -> RuledSide:
     rows = range(1, surface.NbControlPointsListI() + 1)
     edges = [
         BSpline(
-            u, np.array([_xyz(surface.ControlPointsListValue(i, j)) for i in rows]), surface.UDegree()
+            u,
+            np.array([_xyz(surface.ControlPointsListValue(i, j)) for i in rows]),
+            surface.UDegree(),
         )
         for j in (1, surface.NbControlPointsListJ())
     ]
@@ -220,7 +232,7 @@ def _comb_quadrature(loop: Floats, knots: Floats) -> tuple[Floats, Floats, Float
     stops = np.unique(np.r_[loop[:, 0], inside])
     nodes, weights = leggauss(4)
     us, vs, ws = [], [], []
-    for a, b in zip(stops[:-1], stops[1:], strict=True):
+    for a, b in pairwise(stops):
         middle = (a + b) / 2.0
         crossed = np.sort(level[(low < middle) & (high > middle)])
         for c, d in zip(crossed[::2], crossed[1::2], strict=False):

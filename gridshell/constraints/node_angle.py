@@ -55,4 +55,4 @@ def _diagonals(x: Floats, quads: Indices) -> Floats:
 
 
 def _lengths(diagonals: Floats) -> Floats:
-    return np.maximum(np.linalg.norm(diagonals, axis=2, keepdims=True), 1e-12)
+    return np.asarray(np.maximum(np.linalg.norm(diagonals, axis=2, keepdims=True), 1e-12))

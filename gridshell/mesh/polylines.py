@@ -112,4 +112,4 @@ def _walk(edges: Indices, closed: bool) -> Indices:
     shared = np.where((a[:, :1] == b).any(axis=1), a[:, 0], a[:, 1])
     start = edges[0].sum() - shared[0]
     end = edges[-1].sum() - shared[-1]
-    return np.r_[start, shared] if closed else np.r_[start, shared, end]
+    return np.asarray(np.r_[start, shared] if closed else np.r_[start, shared, end])

@@ -1,0 +1,114 @@
+"""Every example runs and fails unless its own figures hold."""
+
+import json
+import os
+import subprocess
+import sys
+from math import pi, radians, sqrt, tan
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fabrication as fab
+import gridshell as gs
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+PROJECTS = sorted(EXAMPLES.glob("*.toml"))
+SCRIPTS = sorted(EXAMPLES.glob("*.py"))
+
+
+@pytest.fixture(scope="session")
+def packages(tmp_path_factory):
+    cache = {}
+
+    def package(name):
+        if name not in cache:
+            project = fab.read_project(EXAMPLES / f"{name}.toml")
+            out = tmp_path_factory.mktemp(name)
+            cache[name] = fab.run(project, out, folder=EXAMPLES), out
+        return cache[name]
+
+    return package
+
+
+@pytest.mark.parametrize("path", PROJECTS, ids=lambda p: p.stem)
+@pytest.mark.xdist_group("examples")
+def test_project_gives_a_package_that_closes(path, packages):
+    report, out = packages(path.stem)
+    assert report["findings"] == []
+    assert report["closure"]["max_mm"] < 0.05
+    assert report["closure"]["volume_ppm"] < 20.0
+    assert report["fit"]["clash_mm3"]["max"] < 1e-3
+    assert report["net"]["star_planarity"]["max"] < 1e-5
+    assert report["net"]["edge_ratio"]["min"] > 0.5
+    assert report["net"]["edge_ratio"]["max"] < 2.0
+    written = json.loads((out / "report.json").read_text())
+    assert written == json.loads(json.dumps(report))
+
+
+@pytest.mark.parametrize(
+    ("name", "degrees"), [("01_enneper_60", 60), ("02_enneper_75", 75), ("03_enneper_90", 90)]
+)
+@pytest.mark.xdist_group("examples")
+def test_enneper_reaches_its_angle_and_the_paper_s_curvature_ratio(name, degrees, packages):
+    report, _ = packages(name)
+    assert report["net"]["angle_error_deg"]["max"] < 0.01
+    assert report["net"]["iterations"] <= 30
+    expected = -(tan(radians(degrees) / 2) ** 2)
+    assert report["net"]["curvature_ratio"] == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.xdist_group("examples")
+def test_catenoid_ring_is_an_annulus_of_equal_lamellas(packages):
+    _, out = packages("04_catenoid_ring")
+    control = gs.read_net(out / "net.json")
+    assert control.mesh.euler_characteristic == 0
+    net = gs.diagonal_meshes(control)[0]
+    built = fab.structure(net, fab.Profile(100.0, 2.5, fab.STAINLESS))
+    lengths = [lamella.axis.length for lamella in built.lamellas]
+    height = abs(net.vertices[built.lamellas[0].nodes[[0, -1]], 2]).max() / 3000.0
+    assert np.ptp(lengths) < 1e-3
+    assert lengths[0] == pytest.approx(2 * 3000.0 * sqrt(2) * np.sinh(height), abs=1.0)
+
+
+@pytest.mark.xdist_group("examples")
+def test_hypar_lamellas_are_straight_and_as_long_as_their_chords(packages):
+    report, out = packages("05_hypar")
+    net = gs.diagonal_meshes(gs.read_net(out / "net.json"))[0]
+    built = fab.structure(net, fab.Profile(80.0, 2.0, fab.S235))
+    for lamella in built.lamellas:
+        ends = net.vertices[lamella.nodes[[0, -1]]]
+        assert lamella.axis.length == pytest.approx(np.linalg.norm(ends[1] - ends[0]), abs=1e-6)
+    assert report["structure"]["max_edgewise_mm"] < 1e-6
+    assert report["net"]["iterations"] == 0
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.stem)
+def test_script_runs_and_does_the_same_job_as_the_project(path, tmp_path):
+    assert len(path.read_text().splitlines()) < 40
+    result = subprocess.run(
+        [sys.executable, str(path), str(tmp_path)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+    )
+    assert result.returncode == 0, result.stderr
+    assert "Converged" in result.stdout
+    assert "30 lamellas, longest 9354." in result.stdout
+    assert len(list((tmp_path / "sheets").glob("*.dxf"))) == 3
+    assert (tmp_path / "structure.step").stat().st_size > 1_000_000
+
+
+def test_angles_of_the_hypar_are_those_of_its_rulings():
+    scale = 6000.0
+    control = gs.control_patch(
+        gs.Hypar(scale), gs.AsymptoticPatch((-0.6, 0.6), (-0.6, 0.6), (9, 9))
+    )
+    net = gs.diagonal_meshes(control)[0]
+    built = fab.structure(net, fab.Profile(80.0, 2.0, fab.S235))
+    for node in built.nodes:
+        x, y = node.position[:2] / scale
+        cosine = x * y / sqrt((1 + x * x) * (1 + y * y))
+        assert min(node.angle, pi - node.angle) == pytest.approx(np.arccos(abs(cosine)), abs=1e-9)
