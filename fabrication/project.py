@@ -280,7 +280,8 @@ def _sections() -> dict[str, type[_Section]]:
 
 def _key(location: tuple[int | str, ...]) -> str:
     """The dotted key a person wrote; names of union branches are left out."""
-    fields = {name for section in (Project, *_sections().values()) for name in section.model_fields}
+    sections: list[type[_Section]] = [Project, *_sections().values()]
+    fields = {name for section in sections for name in section.model_fields}
     *path, last = location or ("",)
     shown = [part for part in path if isinstance(part, int) or part in fields]
     branch = (last in _sections() and last not in fields) or str(last).startswith("literal[")

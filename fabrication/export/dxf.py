@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from ezdxf import units
 from ezdxf.document import Drawing
-from ezdxf.entities import LWPolyline
+from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new, readfile
 from ezdxf.layouts.layout import Modelspace
