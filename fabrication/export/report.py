@@ -36,7 +36,6 @@ FAMILY_COLOURS = {1: (0.80, 0.52, 0.25), 2: (0.36, 0.47, 0.58)}
 
 _SAMPLES_PER_BAY = 6
 _INK, _QUIET = "#1c232d", "#5a6472"
-_FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 _LIGHT = {"ambient": 0.8, "diffuse": 0.35, "specular": 0.05, "roughness": 0.8, "fresnel": 0.05}
 _VIEW, _FIELD, _ASPECT = (0.62, -0.64, 0.46), np.pi / 4.0, 1.5
 """Towards the camera; plotly's own vertical field of view; the frame's width over its height."""
@@ -231,26 +230,7 @@ def _figure(structure: Structure, parts: Sequence[FlatPart]) -> Any:
     points = np.concatenate([np.stack([t.x, t.y, t.z], axis=1) for t in traces]).astype(np.float64)
     points = points[np.isfinite(points[:, 0])]
     traces += [_nodes(structure, centre), _axes(points)]
-    hidden = {f"{c}axis": {"visible": False, "showspikes": False} for c in "xyz"}
-    layout = {
-        "template": "none",
-        "autosize": True,
-        "margin": dict.fromkeys("ltrb", 0),
-        "font": {"family": _FONT, "size": 13, "color": _INK},
-        "hoverlabel": {
-            "bgcolor": "#ffffff",
-            "bordercolor": _QUIET,
-            "font": {"family": _FONT, "color": _INK},
-        },
-        "legend": {
-            "x": 0.01,
-            "y": 0.99,
-            "itemsizing": "constant",
-            "bgcolor": "rgba(255,255,255,0.7)",
-        },
-        "scene": {"aspectmode": "data", "camera": _camera(points), **hidden},
-    }
-    return go.Figure(traces, layout)
+    return go.Figure(traces, {"template": "none", "scene": {"camera": _camera(points)}})
 
 
 def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[Any]:
@@ -373,19 +353,12 @@ def _camera(points: Points) -> dict[str, Any]:
 # ---- the longest strip ----------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Station:
-    """A dimension: drawn at *x*, its figure at *at*, the partner's mark at height *y*, all px."""
-
-    x: float
-    at: float
-    y: float
-    text: str
-    partner: str
-
-
 def _drawing(part: FlatPart) -> dict[str, Any]:
-    """A flat strip to look at, px: lengths to scale, its width and its slots not."""
+    """A flat strip to look at, px: lengths to scale, its width and its slots not.
+
+    A station is its place along the strip, the place of its figure, the figure, and the mark of
+    the partner with its height; the two ends have no partner.
+    """
     length, height = _STRIP
     along, across = length / part.length, height / part.width
     drawn = [
@@ -394,26 +367,18 @@ def _drawing(part: FlatPart) -> dict[str, Any]:
         )
         for s in part.slots
     ]
-    corners = [f"{x:.1f},{height - y:.1f}" for x, y in outline(length, height, drawn)]
-    at = _apart(np.array([0.0, *(slot.x for slot in drawn), length]))
-    slots = [
-        _Station(
-            slot.x * along,
-            here,
-            height * (0.8 if slot.edge is Edge.UPPER else 0.2),
-            _fixed(slot.x, 1),
-            slot.partner,
-        )
-        for slot, here in zip(part.slots, at[1:-1].tolist(), strict=True)
-    ]
-    first = _Station(0.0, float(at[0]), 0.0, _fixed(0.0, 1), "")
-    last = _Station(length, float(at[-1]), 0.0, _fixed(part.length, 1), "")
+    x = np.array([0.0, *(slot.x for slot in part.slots), part.length])
+    figures = [_fixed(station, 1) for station in x.tolist()]
+    partners = ["", *(slot.partner for slot in part.slots), ""]
+    behind = [0.8 if slot.edge is Edge.UPPER else 0.2 for slot in part.slots]
+    heights = [height * share for share in (0.0, *behind, 0.0)]
+    places = (x * along).round(1).tolist(), _apart(x * along).round(1).tolist()
     return {
         "part": part,
-        "corners": " ".join(corners),
         "length": length,
         "height": height,
-        "stations": [first, *slots, last],
+        "corners": " ".join(f"{x:.1f},{height - y:.1f}" for x, y in outline(length, height, drawn)),
+        "stations": list(zip(*places, figures, partners, heights, strict=True)),
     }
 
 
