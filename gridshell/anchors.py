@@ -12,10 +12,10 @@ from typing import Protocol
 
 import numpy as np
 
-from gridshell.arrays import Indices, Points
+from gridshell.arrays import Indices, Mask, Points
 from gridshell.constraints import Glide, smooth_curve
 from gridshell.errors import SettingError
-from gridshell.mesh import ControlMesh
+from gridshell.mesh import ControlMesh, QuadMesh, diagonal_meshes
 from gridshell.solve import Term, Weight
 
 
@@ -126,26 +126,42 @@ def boundary_runs(control: ControlMesh) -> tuple[Run, ...]:
     """The boundary between its corners.
 
     Where the control mesh has a zigzag rim (its diagonals follow the boundary), the runs are
-    those of D1's straight boundary and the outer teeth are free.
+    those of the faces of D1 and the outer teeth are free.
     """
-    valence = control.mesh.valence
     runs: list[Run] = []
+    teeth = np.zeros(len(control.vertices), dtype=bool)
     for loop in control.mesh.boundary_loops:
-        straight = np.count_nonzero(valence[loop] == 2)
-        if 2 * straight >= len(loop):
-            vertices, corner = loop, valence[loop] != 2
+        corner = control.mesh.valence[loop] != 2
+        if 2 * np.count_nonzero(corner) > len(loop):
+            teeth[loop] = True
         else:
-            vertices = loop[(control.colour[loop] == 0) & (valence[loop] >= 2)]
-            corner = valence[vertices] == 2
-        if len(vertices):
-            runs.extend(_between(vertices, np.flatnonzero(corner)))
+            runs.extend(_between(loop, corner))
+    if teeth.any():
+        runs.extend(_rim_of_faces(control, teeth))
     return tuple(runs)
 
 
-def _between(loop: Indices, corners: Indices) -> list[Run]:
+def _rim_of_faces(control: ControlMesh, teeth: Mask) -> list[Run]:
+    """Boundary runs of D1's quads along the loops of C whose vertices are marked."""
+    net = diagonal_meshes(control)[0]
+    quads = net.faces[(net.faces[:, :4] >= 0).all(axis=1) & (net.faces[:, 4:] < 0).all(axis=1), :4]
+    if len(quads) == 0:
+        return []
+    faces = QuadMesh(net.vertices, quads)
+    runs: list[Run] = []
+    for loop in faces.boundary_loops:
+        vertices = net.control_vertices[loop]
+        if teeth[vertices].any():
+            runs.extend(_between(vertices, faces.valence[loop] != 2))
+    return runs
+
+
+def _between(loop: Indices, corner: Mask) -> list[Run]:
+    """Split a loop at its corners."""
+    corners = np.flatnonzero(corner)
     if len(corners) == 0:
         return [Run(loop, True)]
     turned = np.roll(loop, -corners[0])
-    stops = np.r_[corners - corners[0], len(loop)]
     turned = np.r_[turned, turned[0]]
+    stops = np.r_[corners - corners[0], len(loop)]
     return [Run(turned[a : b + 1], False) for a, b in pairwise(stops)]

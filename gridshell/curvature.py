@@ -27,6 +27,8 @@ def principal_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats]:
         normal of its counter-clockwise side.
     """
     centre, neighbours = _two_rings(mesh)
+    if len(centre) == 0:
+        return centre, np.empty((0, 2))
     inside = neighbours >= 0
     normals = vertex_normals(mesh)[centre]
     for _ in range(2):

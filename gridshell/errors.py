@@ -21,6 +21,9 @@ broke and what to *try*; the message is these five in one or two sentences.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 
 class GridshellError(Exception):
     """Base of all errors raised on purpose.
@@ -51,6 +54,11 @@ class GridshellError(Exception):
         ]
         message = what + (f" ({'; '.join(details)})" if details else "") + "."
         super().__init__(message + (f" Try: {advice}." if advice else ""))
+
+    def __reduce__(self) -> tuple[Callable[..., GridshellError], tuple[str]]:
+        """Pickle by the five parts, so that an error survives the way from another process."""
+        parts = {key: getattr(self, key) for key in ("where", "value", "limit", "advice")}
+        return partial(type(self), **parts), (self.what,)
 
     def __str__(self) -> str:
         return str(self.args[0])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from gridshell.anchors import Anchor
 from gridshell.arrays import Points
-from gridshell.errors import SolveError
+from gridshell.errors import MeshError, SolveError
 from gridshell.mesh import ControlMesh
 from gridshell.quality import NetQuality, net_quality
 from gridshell.recipes import Recipe
@@ -66,6 +66,8 @@ def optimize(
 
     Raises
     ------
+    MeshError
+        When all vertices coincide.
     SettingError
         When the anchor names a vertex that does not exist.
     SolveError
@@ -73,6 +75,8 @@ def optimize(
     """
     used = control.mesh.valence > 0
     centre, scale = control.vertices[used].mean(axis=0), control.mesh.mean_edge
+    if not scale > 0.0:
+        raise MeshError("All vertices of the mesh coincide", value="mean edge 0 mm")
     x = (control.vertices - centre) / scale
     posed = control.moved(x)
     surface = None if reference is None else _Scaled(reference, centre, scale)

@@ -114,7 +114,8 @@ def _asymptotic(surface: AnalyticSurface, patch: AsymptoticPatch) -> ControlMesh
     vertices = _vertices(surface, u, v)
     # u to the right and v up are ccw for the normal xu x xv; (p, q) turns the other way
     quads = grid_quads(2 * across_p, 2 * across_q)[:, ::-1]
-    return control_mesh(QuadMesh(vertices, quads))
+    # the first quad's first diagonal runs along j, which is q
+    return control_mesh(QuadMesh(vertices, quads)).families_exchanged()
 
 
 def _bisecting(surface: AnalyticSurface, patch: BisectingPatch) -> ControlMesh:

@@ -307,7 +307,7 @@ def _nodes(structure: Structure, centre: Floats) -> Any:
 
 def _axes(points: Points) -> Any:
     """The directions x, y and z in a lower corner around *points*, a round length long."""
-    length = 10.0 ** np.floor(np.log10(np.ptp(points, axis=0).max() / 5.0))
+    length = 10.0 ** np.floor(np.log10(np.ptp(points, axis=0).max() / 4.0))
     right, rear, _ = points.max(axis=0) - length
     corner = np.array([right, rear, points[:, 2].min()])
     return go.Scatter3d(

@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from gridshell.arrays import Indices
 from gridshell.errors import FileError
+from gridshell.io.text import write_text
 from gridshell.mesh import ControlMesh, QuadMesh
 
 FORMAT = "gridshell-net"
@@ -20,7 +22,13 @@ VERSION = 1
 
 
 def write_net(path: Path | str, control: ControlMesh) -> None:
-    """Write *control* in mm and full double precision."""
+    """Write *control* in mm and full double precision.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be written.
+    """
     document = {
         "format": FORMAT,
         "version": VERSION,
@@ -29,7 +37,7 @@ def write_net(path: Path | str, control: ControlMesh) -> None:
         "quads": control.quads.tolist(),
         "colour": control.colour.tolist(),
     }
-    Path(path).write_text(json.dumps(document, separators=(",", ":")) + "\n", encoding="utf-8")
+    write_text(path, json.dumps(document, separators=(",", ":")) + "\n")
 
 
 def read_net(path: Path | str) -> ControlMesh:
@@ -47,13 +55,26 @@ def read_net(path: Path | str) -> ControlMesh:
         vertices = np.array(document["vertices"], dtype=np.float64)
         quads = np.array(document["quads"], dtype=np.int64)
         colour = np.array(document["colour"], dtype=np.int64)
-    except (KeyError, ValueError, TypeError) as error:
+    except (KeyError, ValueError, TypeError, OverflowError) as error:
         raise FileError("The net is incomplete", where=str(path), value=repr(error)) from None
+    mesh = QuadMesh(vertices, quads)
     if colour.shape != (len(vertices),):
         raise FileError(
             "Each vertex needs a colour", where=f"{path}, colour", value=f"{colour.shape}"
         )
-    return ControlMesh(QuadMesh(vertices, quads), colour)
+    if not _alternates(mesh, colour):
+        raise FileError(
+            "The colours must alternate along every edge",
+            where=f"{path}, colour",
+            limit="0 and 1, and -1 for a vertex without quads",
+        )
+    return ControlMesh(mesh, colour)
+
+
+def _alternates(mesh: QuadMesh, colour: Indices) -> bool:
+    a, b = colour[mesh.edges.T]
+    used = mesh.valence > 0
+    return bool((a + b == 1).all() and np.isin(colour[used], (0, 1)).all())
 
 
 def _load(path: Path) -> dict[str, Any]:
@@ -73,5 +94,9 @@ def _load(path: Path) -> dict[str, Any]:
             where=str(path),
             value=str(document.get("version")),
             limit=str(VERSION),
+        )
+    if document.get("unit") != "mm":
+        raise FileError(
+            "A net is in mm", where=f"{path}, unit", value=repr(document.get("unit")), limit="'mm'"
         )
     return document

@@ -9,6 +9,7 @@ import numpy as np
 
 from gridshell.arrays import Indices, Points
 from gridshell.errors import FileError
+from gridshell.io.text import write_text
 from gridshell.mesh import QuadMesh, oriented
 
 
@@ -54,7 +55,7 @@ def read_obj(path: Path | str, *, unit: Unit) -> QuadMesh:
     """
     path = Path(path)
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise FileError(
             "The mesh file cannot be read",
@@ -62,31 +63,30 @@ def read_obj(path: Path | str, *, unit: Unit) -> QuadMesh:
             value=error.strerror or type(error).__name__,
             advice="check the path; it is relative to the project file",
         ) from None
-    vertices, quads = _parse(path, lines)
+    vertices, quads = _parse(path, text.replace("\\\n", " ").splitlines())
     used, compact = np.unique(quads, return_inverse=True)
-    if quads.size and (quads.min() < 0 or quads.max() >= len(vertices)):
-        raise FileError(
-            "A face names a vertex that does not exist",
-            where=str(path),
-            value=f"vertex {int(quads.max()) + 1}",
-            limit=f"1 .. {len(vertices)}",
-        )
     return oriented(vertices[used] * unit.value, compact.reshape(quads.shape))
 
 
 def write_obj(path: Path | str, mesh: QuadMesh, *, unit: Unit) -> None:
-    """Write vertices and quads in full double precision."""
+    """Write vertices and quads in full double precision.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be written.
+    """
     rows = [f"# unit: {unit.name.lower()}"]
     rows += ["v {!r} {!r} {!r}".format(*row) for row in (mesh.vertices / unit.value).tolist()]
     rows += ["f {} {} {} {}".format(*row) for row in (mesh.quads + 1).tolist()]
-    Path(path).write_text("\n".join(rows) + "\n", encoding="utf-8")
+    write_text(path, "\n".join(rows) + "\n")
 
 
 def _parse(path: Path, lines: list[str]) -> tuple[Points, Indices]:
     vertices: list[list[float]] = []
     quads: list[list[int]] = []
     for number, line in enumerate(lines, start=1):
-        fields = line.split()
+        fields = line.partition("#")[0].split()
         try:
             if fields[:1] == ["v"]:
                 x, y, z = (float(field) for field in fields[1:4])
@@ -105,11 +105,25 @@ def _parse(path: Path, lines: list[str]) -> tuple[Points, Indices]:
                 limit="4 corners",
                 advice="export the mesh as quads",
             )
+    for number, quad in enumerate(quads):
+        for index in quad:
+            if not 0 <= index < len(vertices):
+                raise FileError(
+                    "A face names a vertex that does not exist",
+                    where=f"{path}, face {number}",
+                    value=f"vertex {index + 1}"
+                    if index >= 0
+                    else "an index before the first vertex",
+                    limit=f"1 .. {len(vertices)}",
+                )
     if not quads:
         raise FileError("The file holds no faces", where=str(path), advice="export a quad mesh")
     return np.array(vertices, dtype=np.float64).reshape(-1, 3), np.array(quads, dtype=np.int64)
 
 
 def _index(field: str, count: int) -> int:
+    """Zero-based index of a corner; negative ones count back from the last vertex read."""
     index = int(field.split("/")[0])
-    return index - 1 if index > 0 else count + index
+    if index < 0:
+        return count + index if count + index >= 0 else -1
+    return index - 1

@@ -30,6 +30,9 @@ class ControlMesh:
     mesh: QuadMesh
     colour: Indices
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "colour", frozen(self.colour, np.int64))
+
     @property
     def vertices(self) -> Points:
         """(n, 3) positions, mm."""
@@ -43,6 +46,11 @@ class ControlMesh:
     def moved(self, vertices: Points) -> ControlMesh:
         """The same labels at other positions."""
         return ControlMesh(self.mesh.moved(vertices), self.colour)
+
+    def families_exchanged(self) -> ControlMesh:
+        """The same mesh with family 1 called 2 and family 2 called 1."""
+        quads = np.roll(self.quads, -1, axis=1)
+        return ControlMesh(QuadMesh(self.vertices, quads), self.colour)
 
 
 def as_control_mesh(mesh: QuadMesh) -> ControlMesh:
@@ -63,7 +71,7 @@ def as_control_mesh(mesh: QuadMesh) -> ControlMesh:
     loose = rolled.valence == 1
     if np.count_nonzero(loose & (colour == 0)) > np.count_nonzero(loose & (colour == 1)):
         colour = np.where(colour < 0, -1, 1 - colour)
-    return ControlMesh(rolled, frozen(colour, np.int64))
+    return ControlMesh(rolled, colour)
 
 
 def control_mesh(mesh: QuadMesh) -> ControlMesh:
@@ -75,7 +83,7 @@ def control_mesh(mesh: QuadMesh) -> ControlMesh:
     Raises
     ------
     MeshError
-        When both colours hold singular vertices, or no interior vertex is left.
+        When both colours hold singular vertices, or the mesh is too small or too narrow.
     OddValenceError, ColouringError
         As :func:`as_control_mesh`.
     """
@@ -103,4 +111,20 @@ def control_mesh(mesh: QuadMesh) -> ControlMesh:
         )
     rings = mesh.target[mesh.fans[centres, :4]]
     used, quads = np.unique(rings, return_inverse=True)
+    if not _joined(quads.reshape(rings.shape)):
+        raise MeshError(
+            "The mesh is too narrow to hold a control mesh",
+            value=f"{len(mesh.quads)} quads",
+            limit="three quads across everywhere",
+            advice="use a finer mesh",
+        )
     return as_control_mesh(QuadMesh(mesh.vertices[used], quads.reshape(rings.shape)))
+
+
+def _joined(quads: Indices) -> bool:
+    """Whether quads that share a vertex are joined by shared edges around it."""
+    shared = np.bincount(quads.ravel())
+    edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    _, inverse, uses = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    inner = np.bincount(edges[uses[inverse.ravel()] == 2].ravel(), minlength=len(shared)) // 2
+    return bool((inner >= shared - 1).all())

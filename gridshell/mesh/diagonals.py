@@ -22,6 +22,7 @@ class DiagonalMesh:
     family : (m,) 1 or 2, the family of each edge.
     faces : (f, k) vertex indices counter-clockwise, padded with -1: quads around regular vertices.
     stars : neighbours of each vertex, counter-clockwise.
+    spoke_edges : (n, k) the edge each spoke belongs to, padded with -1.
     control_vertices : (n,) the control mesh's index of each vertex.
     """
 
@@ -30,6 +31,7 @@ class DiagonalMesh:
     family: Indices
     faces: Indices
     stars: Stars
+    spoke_edges: Indices
     control_vertices: Indices
 
     @property
@@ -64,5 +66,6 @@ def _diagonal_mesh(control: ControlMesh, stars: Stars, colour: int) -> DiagonalM
         stars=Stars(
             np.where(spokes >= 0, local[spokes], -1), stars.count[used], stars.closed[used]
         ),
+        spoke_edges=frozen(control.mesh.fans[used] // 4, np.int64),
         control_vertices=frozen(used, np.int64),
     )

@@ -44,17 +44,9 @@ def polylines(net: DiagonalMesh) -> tuple[Polyline, ...]:
 
 def _linked_edges(net: DiagonalMesh) -> Indices:
     """(l, 2) pairs of edges that continue each other."""
-    before, centre, after = net.stars.continuations().T
-    n = len(net.vertices)
-    low, high = np.sort(net.edges, axis=1).T
-    keys = low * n + high
-    order = np.argsort(keys)
-
-    def edge_index(a: Indices, b: Indices) -> Indices:
-        key = np.minimum(a, b) * n + np.maximum(a, b)
-        return order[np.searchsorted(keys, key, sorter=order)]
-
-    return np.stack([edge_index(before, centre), edge_index(centre, after)], axis=1)
+    centre, slot, opposite = net.stars.through().T
+    pairs = [net.spoke_edges[centre, slot], net.spoke_edges[centre, opposite]]
+    return np.stack(pairs, axis=1) if len(centre) else np.empty((0, 2), dtype=np.int64)
 
 
 def _chains(n: int, links: Indices) -> tuple[Indices, Indices, np.ndarray]:

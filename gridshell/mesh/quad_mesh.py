@@ -41,6 +41,7 @@ class QuadMesh:
     _twin: Indices = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        _check_whole(self.quads)
         vertices, quads = frozen(self.vertices), frozen(self.quads, np.int64)
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "quads", quads)
@@ -216,6 +217,12 @@ def oriented(vertices: Points, quads: Indices) -> QuadMesh:
 def position(point: Floats) -> str:
     """A position as people read it: ``(x, y, z) mm``."""
     return "({:.6g}, {:.6g}, {:.6g}) mm".format(*point)
+
+
+def _check_whole(quads: Indices) -> None:
+    values = np.asarray(quads)
+    if values.dtype.kind not in "iu" and (values != np.floor(values)).any():
+        raise MeshError("Vertex indices must be whole numbers", value=f"{values.dtype}")
 
 
 def _check_arrays(vertices: Points, quads: Indices) -> None:

@@ -16,7 +16,7 @@ class Stars:
 
     Parameters
     ----------
-    spokes : (n, k) neighbours of each vertex, counter-clockwise, padded with -1.
+    spokes : (n, k >= 4) neighbours of each vertex, counter-clockwise, padded with -1.
     count : (n,) neighbours of each vertex.
     closed : (n,) whether the spokes go all the way around.
     """
@@ -29,19 +29,22 @@ class Stars:
         """Vertices with four spokes whose opposite ones continue each other."""
         return np.flatnonzero(self.count == 4)
 
-    def continuations(self) -> Indices:
-        """(m, 3) rows (neighbour, vertex, opposite neighbour) of polylines that run through.
+    def through(self) -> Indices:
+        """(m, 3) rows (vertex, slot, opposite slot) of the spokes that continue each other.
 
-        Spokes i and i + 2 continue each other in a star of four, and in an open star of three
-        spokes or more than that of an edge star's boundary vertex. Polylines end in singular
-        vertices and at corners.
+        Spokes i and i + 2 do in a star of four, and the outer two in an open star of three.
+        Polylines end in singular vertices and at corners.
         """
         four = np.flatnonzero(self.count == 4)
         three = np.flatnonzero((self.count == 3) & ~self.closed)
         centre = np.concatenate([four, four, three])
-        before = np.concatenate([self.spokes[four, :2].T.ravel(), self.spokes[three, 0]])
-        after = np.concatenate([self.spokes[four, 2:4].T.ravel(), self.spokes[three, 2]])
-        return np.stack([before, centre, after], axis=1)
+        slot = np.repeat([0, 1, 0], [len(four), len(four), len(three)])
+        return np.stack([centre, slot, slot + 2], axis=1)
+
+    def continuations(self) -> Indices:
+        """(m, 3) rows (neighbour, vertex, opposite neighbour) of polylines that run through."""
+        centre, slot, opposite = self.through().T
+        return np.stack([self.spokes[centre, slot], centre, self.spokes[centre, opposite]], axis=1)
 
 
 def diagonal_stars(mesh: QuadMesh) -> Stars:
@@ -49,7 +52,7 @@ def diagonal_stars(mesh: QuadMesh) -> Stars:
     fans = mesh.fans
     face, corner = fans // 4, fans % 4
     opposite = mesh.quads[face, (corner + 2) % 4]
-    spokes = np.where(fans >= 0, opposite, -1)
+    spokes = _padded(np.where(fans >= 0, opposite, -1))
     return Stars(spokes, mesh.valence, ~mesh.on_boundary & (mesh.valence > 0))
 
 
@@ -64,4 +67,10 @@ def edge_stars(mesh: QuadMesh) -> Stars:
     spokes[rim, mesh.valence[rim]] = mesh.origin[previous_in_quad(last)]
     count = mesh.valence + mesh.on_boundary
     keep = int(count.max(initial=0))
-    return Stars(spokes[:, :keep], count, ~mesh.on_boundary & (mesh.valence > 0))
+    return Stars(_padded(spokes[:, :keep]), count, ~mesh.on_boundary & (mesh.valence > 0))
+
+
+def _padded(spokes: Indices) -> Indices:
+    """At least four columns, so that a net without a regular star has slots for one."""
+    missing = max(0, 4 - spokes.shape[1])
+    return np.pad(spokes, ((0, 0), (0, missing)), constant_values=-1)

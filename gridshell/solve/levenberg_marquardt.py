@@ -46,6 +46,10 @@ class Stop:
             raise SettingError("At least one step is needed", value=f"{self.steps}", limit=">= 1")
         if not self.tolerance > 0.0:
             raise SettingError("The tolerance must be positive", value=f"{self.tolerance}")
+        if not (self.damping >= 0.0 and self.damping_floor >= 0.0):
+            raise SettingError(
+                "Damping cannot be negative", value=f"{self.damping}, floor {self.damping_floor}"
+            )
 
 
 Progress = Callable[[int, Step], None]
@@ -80,7 +84,8 @@ def _iterate(
     steps: list[Step] = []
     lags = _lags(problem, x)
     now = _evaluate(problem, x, lags)
-    while not (converged := _goals_met(problem, now, stop.tolerance)) and len(steps) < stop.steps:
+    budget = stop.steps if len(equations.free) else 0
+    while not (converged := _goals_met(problem, now, stop.tolerance)) and len(steps) < budget:
         weights = [term.weight.at(len(steps)) for term in problem.terms]
         data, gradient = equations.assemble(now, weights)
         d = equations.expand(factor.solve(equations.damped(data, damping), -gradient))
@@ -152,7 +157,8 @@ def _status(
 ) -> str:
     worst = _largest(problem, now)
     goals = ", ".join(f"{t.name} {worst[t.name]:.1e}" for t in problem.terms if t.goal)
+    reached = f": largest residuals {goals}" if goals else ", with no goal to reach"
     if converged:
-        return f"Converged in {len(steps)} steps: largest residuals {goals}."
+        return f"Converged in {len(steps)} steps{reached}."
     refused = sum(not step.accepted for step in steps)
-    return f"Not converged after {len(steps)} steps ({refused} refused): largest residuals {goals}."
+    return f"Not converged after {len(steps)} steps ({refused} refused){reached}."

@@ -109,7 +109,7 @@ class Factorisation(Protocol):
 
 def factorisation(equations: NormalEquations, *, portable: bool = False) -> Factorisation:
     """PARDISO where it is installed, SuperLU elsewhere or when *portable* is asked for."""
-    if not portable:
+    if not portable and len(equations.free):
         try:
             return _Pardiso(equations)
         except ImportError:

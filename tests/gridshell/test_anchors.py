@@ -69,6 +69,14 @@ def test_along_a_zigzag_rim_a_reflex_corner_of_the_net_is_a_corner(l_shape):
     assert corners(control) == {(1, 1), (7, 1), (7, 3), (3, 3), (3, 7), (1, 7)}
 
 
+@pytest.mark.parametrize("size", [(5, 5), (6, 5), (7, 6), (7, 7)])
+def test_along_the_teeth_of_an_odd_grid_no_run_jumps_over_a_node(grid, size):
+    """Edges of the net are 2 long, teeth in a row 2 apart, teeth around a corner 2 sqrt(2)."""
+    for line, closed in runs(gs.control_mesh(grid(*size))):
+        ring = [*line, line[0]] if closed else line
+        assert np.linalg.norm(np.diff(ring, axis=0), axis=1).max() < 2.9
+
+
 # ---- anchors --------------------------------------------------------------------------------
 
 

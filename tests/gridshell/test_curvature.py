@@ -90,6 +90,13 @@ def test_only_inner_vertices_with_fourteen_neighbours_are_estimated(grid):
     assert found.shape == (2, 2)
 
 
+def test_thirteen_neighbours_are_too_few(grid):
+    """Without its first quad, one of both vertices has lost a corner of its two rings."""
+    mesh = grid(2, 5)
+    vertices, _ = gs.principal_curvatures(gs.QuadMesh(mesh.vertices, mesh.quads[1:]))
+    assert vertices.tolist() == [1 * 6 + 3]
+
+
 @pytest.mark.parametrize(("rows", "columns"), [(1, 1), (2, 2), (1, 9)])
 def test_a_mesh_too_small_for_any_estimate_gives_none(grid, rows, columns):
     vertices, found = gs.principal_curvatures(grid(rows, columns))
@@ -118,3 +125,71 @@ def test_vertex_normals_have_unit_length_but_for_unused_vertices(monkey_saddle):
     length = np.linalg.norm(vertex_normals(widened), axis=1)
     np.testing.assert_allclose(length[:-1], 1.0, rtol=1e-15)
     assert length[-1] == 0.0
+
+
+# ---- negative curvature ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [name for name in SURFACES if name != "sphere"])
+def test_saddle_shaped_surfaces_are_hyperbolic(name):
+    gs.require_hyperbolic(meshed(SURFACES[name]))
+
+
+def bowl(grid):
+    """Curved most at vertex 60, the middle of 10 x 10 quads."""
+    return grid(10, 10, lambda x, y: 2.0 * np.sqrt(36.0 + (x - 5.0) ** 2 + (y - 5.0) ** 2))
+
+
+def test_a_bowl_is_refused_by_its_most_curved_vertex_and_the_position(grid):
+    with pytest.raises(gs.NotHyperbolicError) as info:
+        gs.require_hyperbolic(bowl(grid))
+    assert info.value.where == "vertex 60 (5, 5, 12) mm"
+    assert "100% of the vertices" in info.value.value
+
+
+def test_the_refusal_names_the_curvature(grid):
+    """At the middle both curvatures are 1 / 3."""
+    with pytest.raises(gs.NotHyperbolicError) as info:
+        gs.require_hyperbolic(bowl(grid))
+    assert float(info.value.value.split()[0]) == pytest.approx(1.0 / 9.0, rel=0.05)
+
+
+def test_a_flat_mesh_and_a_cylinder_are_refused(grid):
+    for height in (None, lambda x, y: np.sqrt(100.0 - (x - 4.0) ** 2)):
+        with pytest.raises(gs.NotHyperbolicError, match="negative Gaussian curvature"):
+            gs.require_hyperbolic(grid(8, 8, height))
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+def test_the_judgement_does_not_depend_on_the_unit(grid, scale):
+    saddle = grid(8, 8, lambda x, y: 0.05 * (x - 4.0) * (y - 4.0))
+    gs.require_hyperbolic(saddle.moved(scale * saddle.vertices))
+    with pytest.raises(gs.NotHyperbolicError):
+        gs.require_hyperbolic(bowl(grid).moved(scale * bowl(grid).vertices))
+
+
+def bumped(grid, bumps):
+    """A saddle of 22 x 22 quads, 441 inner vertices, with small domes on some of them."""
+
+    def height(x, y):
+        domes = [np.exp(-((x - a) ** 2 + (y - b) ** 2)) for a, b in bumps]
+        return 0.01 * (x - 11.0) * (y - 11.0) + 0.05 * np.sum(domes, axis=0)
+
+    return grid(22, 22, height)
+
+
+def test_a_bump_among_hundreds_of_vertices_is_tolerated(grid):
+    mesh = bumped(grid, [(11, 11)])
+    _, found = gs.principal_curvatures(mesh)
+    assert (found.prod(axis=1) > 0.0).any()
+    gs.require_hyperbolic(mesh)
+
+
+def test_many_bumps_are_not(grid):
+    bumps = [(a, b) for a in (4, 11, 18) for b in (4, 11, 18)]
+    with pytest.raises(gs.NotHyperbolicError):
+        gs.require_hyperbolic(bumped(grid, bumps))
+
+
+def test_a_mesh_too_small_to_tell_is_not_refused(grid):
+    gs.require_hyperbolic(grid(2, 2))

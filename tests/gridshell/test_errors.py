@@ -3,6 +3,7 @@ import pickle
 import pytest
 
 import gridshell as gs
+from gridshell import errors
 
 TREE = {
     gs.InputError: (gs.GridshellError, ValueError),
@@ -27,7 +28,7 @@ def test_the_tree_is_the_one_that_is_drawn(error):
 
 @pytest.mark.parametrize("error", EVERY)
 def test_every_error_is_drawn_in_the_docstring_of_the_module(error):
-    assert error.__name__ in gs.errors.__doc__
+    assert error.__name__ in errors.__doc__
 
 
 @pytest.mark.parametrize("error", EVERY)

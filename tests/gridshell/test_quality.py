@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 import gridshell as gs
+from gridshell.mesh import grid_quads
 from gridshell.quality import curvature_ratio, edge_ratio, star_planarity
 
 # ---- independent formulas -------------------------------------------------------------------
@@ -24,10 +25,11 @@ def angle_by_cosine(quad):
     return np.degrees(np.arccos(a @ b / np.sqrt((a @ a) * (b @ b))))
 
 
-@pytest.fixture(scope="module")
-def crumpled(monkey_saddle):
-    noise = np.random.default_rng(2).normal(scale=0.15, size=monkey_saddle.vertices.shape)
-    return gs.as_control_mesh(monkey_saddle.moved(monkey_saddle.vertices + noise))
+@pytest.fixture(scope="module", params=["stars of six", "open stars of three"])
+def crumpled(request, monkey_saddle, l_shape):
+    mesh = monkey_saddle if request.param == "stars of six" else l_shape(3)
+    noise = np.random.default_rng(2).normal(scale=0.15, size=mesh.vertices.shape)
+    return gs.as_control_mesh(mesh.moved(mesh.vertices + noise))
 
 
 def test_star_planarity_agrees_with_an_independent_formula(crumpled):
@@ -152,7 +154,7 @@ def test_the_distance_is_measured_from_the_reference():
     u, v = np.meshgrid(np.linspace(0.0, 1.0, 6), np.linspace(-0.5, 0.5, 6), indexing="ij")
     points = sphere.point(u.ravel(), v.ravel())
     radius = np.where(np.arange(36) % 2 == 0, 1.003, 0.999)
-    mesh = gs.QuadMesh(points * radius[:, None], gs.mesh.grid_quads(5, 5))
+    mesh = gs.QuadMesh(points * radius[:, None], grid_quads(5, 5))
     found = gs.net_quality(gs.as_control_mesh(mesh), reference=sphere).surface_distance_mm
     assert found.max == pytest.approx(3.0, rel=1e-9)
     assert found.mean == pytest.approx(2.0, rel=1e-9)

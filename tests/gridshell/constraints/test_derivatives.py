@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import gridshell as gs
+from gridshell import constraints
 from gridshell.constraints import (
     Closeness,
     Coplanarity,
@@ -107,5 +108,5 @@ def test_evaluating_changes_nothing(constraint, x):
 
 def test_every_constraint_is_in_the_list(sectors):
     listed = {type(make(sectors(6, 2))) for make in CONSTRAINTS.values()}
-    public = {value for value in vars(gs.constraints).values() if hasattr(value, "evaluate")}
+    public = {value for value in vars(constraints).values() if hasattr(value, "evaluate")}
     assert listed == public

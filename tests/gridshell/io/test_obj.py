@@ -226,3 +226,11 @@ def test_a_moebius_strip_is_refused(read, moebius):
     text += "".join("f {} {} {} {}\n".format(*row) for row in (quads + 1).tolist())
     with pytest.raises(gs.OrientationError):
         read(text)
+
+
+def test_a_byte_order_mark_and_trailing_comments_and_continued_lines_are_read(tmp_path):
+    path = tmp_path / "mesh.obj"
+    text = "\ufeffv 0 0 0 # first\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 4 # quad\n"
+    path.write_text(text, encoding="utf-8")
+    mesh = gs.read_obj(path, unit=gs.Unit.MM)
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]

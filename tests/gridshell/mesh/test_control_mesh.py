@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gridshell as gs
+from gridshell.mesh import grid_quads
 
 SIZES = [(2, 2), (2, 3), (3, 2), (4, 5)]
 
@@ -155,3 +156,10 @@ def test_singular_vertices_of_both_colours_are_refused_by_vertex_position_and_va
     assert type(info.value) is gs.MeshError
     assert info.value.where == "vertex 9 (0.5, 1.5, 0) mm"
     assert info.value.value == "valence 2"
+
+
+def test_a_mesh_too_narrow_for_a_control_mesh_is_refused():
+    i, j = np.meshgrid(np.arange(3.0), np.arange(7.0), indexing="ij")
+    vertices = np.stack([i.ravel(), j.ravel(), 0.0 * i.ravel()], axis=1)
+    with pytest.raises(gs.MeshError, match="too narrow"):
+        gs.control_mesh(gs.QuadMesh(vertices, grid_quads(2, 6)))

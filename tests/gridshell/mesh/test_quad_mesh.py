@@ -127,7 +127,10 @@ def test_an_open_fan_starts_on_the_boundary(l_shape):
 def test_the_next_spoke_past_the_boundary_is_minus_one(grid):
     mesh = grid(2, 2)
     assert mesh.next_spoke(mesh.fans[0, :1]).tolist() == [-1]
-    assert mesh.next_spoke(np.array([-1])).tolist() == [-1]
+
+
+def test_past_the_end_of_a_fan_there_is_no_spoke(torus):
+    assert torus(6, 6).next_spoke(np.array([-1])).tolist() == [-1]
 
 
 def test_a_closed_fan_starts_with_its_smallest_half_edge(grid):
@@ -345,3 +348,9 @@ def test_a_moebius_strip_cannot_be_oriented_and_a_quad_of_it_is_named(moebius):
 
 def test_a_moebius_strip_is_no_quad_mesh_either(moebius):
     raised(gs.OrientationError, gs.QuadMesh, *moebius)
+
+
+def test_fractional_indices_are_refused():
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    with pytest.raises(gs.MeshError, match="whole numbers"):
+        gs.QuadMesh(vertices, np.array([[0.0, 1.0, 2.7, 3.0]]))

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import gridshell as gs
-from gridshell.solve import Term, Weight, columns_of
+from gridshell.solve import Stop, Term, Weight, columns_of
 
 
 def test_a_weight_is_constant_by_default():
@@ -48,3 +48,9 @@ def test_columns_of_points_are_their_coordinates_in_order():
 
 def test_columns_of_no_points_keep_their_width():
     assert columns_of(np.empty((0, 5), dtype=np.int64)).shape == (0, 15)
+
+
+@pytest.mark.parametrize("setting", [{"damping": -1.0}, {"damping_floor": -1e-9}])
+def test_negative_damping_is_refused(setting):
+    with pytest.raises(gs.SettingError, match="negative"):
+        Stop(**setting)

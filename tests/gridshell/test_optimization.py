@@ -5,6 +5,7 @@ from scipy.spatial.transform import Rotation
 import gridshell as gs
 from gridshell.anchors import boundary_runs
 from gridshell.constraints import second_differences, smooth_curve
+from gridshell.mesh import grid_quads
 from gridshell.quality import star_planarity
 from gridshell.solve import Stop, Weight
 
@@ -313,7 +314,7 @@ def test_a_reference_moves_with_the_mesh_far_from_the_origin():
     radius = 1e5
     u, v = np.meshgrid(np.linspace(0.0, 0.05, 7), np.linspace(0.0, 0.05, 7), indexing="ij")
     points = 1.001 * gs.Sphere(radius).point(u.ravel(), v.ravel())
-    start = gs.as_control_mesh(gs.QuadMesh(points, gs.mesh.grid_quads(6, 6)))
+    start = gs.as_control_mesh(gs.QuadMesh(points, grid_quads(6, 6)))
     recipe = gs.ANet(proximity=Weight(10.0), stop=Stop(steps=3))
     found = gs.optimize(start, recipe, anchor=gs.Free(), reference=gs.Sphere(radius))
     assert found.quality.surface_distance_mm.mean < 1.0
@@ -427,3 +428,9 @@ def test_its_energy_falls_all_the_same(paper_and_default):
     """Falling energies are no proof of a net: quality is."""
     _, paper, _ = paper_and_default
     assert paper.steps[-1].energy < 0.5 * paper.steps[0].energy
+
+
+def test_a_mesh_whose_vertices_coincide_is_refused():
+    control = gs.as_control_mesh(gs.QuadMesh(np.zeros((4, 3)), np.array([[0, 1, 2, 3]])))
+    with pytest.raises(gs.MeshError, match="coincide"):
+        gs.optimize(control, gs.a_net(), anchor=gs.Free())
