@@ -50,6 +50,7 @@ def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
             lamella.mark,
             radius,
             smallest,
+            "mm",
             f"{lamella.mark} bends to a radius of {radius:.0f} mm; {material.name} of "
             f"{profile.thickness:g} mm needs {smallest:.0f} mm. At most {thickest:.2f} mm thick.",
         )
@@ -63,6 +64,7 @@ def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
             lamella.mark,
             rate,
             fastest,
+            "rad/mm",
             f"{lamella.mark} twists by {np.degrees(rate) * 1000:.0f} degrees per metre; "
             f"{material.name} of {profile.thickness:g} mm bears "
             f"{np.degrees(fastest) * 1000:.0f}. Use a thinner strip.",
@@ -75,6 +77,7 @@ def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
             lamella.mark,
             stress,
             material.strength,
+            "N/mm2",
             f"{lamella.mark} must bend about its strong axis: {stress:.0f} N/mm2. The net is not "
             "asymptotic enough there: optimise further, or use a narrower strip.",
         )
@@ -90,6 +93,7 @@ def _slots(part: FlatPart) -> Iterator[Finding]:
                 f"{part.mark} {a.node}-{b.node}",
                 web,
                 part.thickness,
+                "mm",
                 f"Only {web:.2f} mm are left between the slots for {a.partner} and {b.partner} in "
                 f"{part.mark}. Use fewer lamellas or a thinner strip.",
             )
@@ -102,6 +106,7 @@ def _slots(part: FlatPart) -> Iterator[Finding]:
                 f"{part.mark} {slot.node}",
                 web,
                 part.thickness,
+                "mm",
                 f"The slot for {slot.partner} leaves {web:.2f} mm at the end of {part.mark}. "
                 "Use a longer overhang.",
             )
@@ -114,6 +119,7 @@ def _seam(lamella: Lamella) -> Finding:
         lamella.mark,
         lamella.axis.length,
         lamella.length,
+        "mm",
         f"{lamella.mark} is closed: its ends meet half-way between its last and its first node "
         "and need a splice there.",
     )

@@ -23,7 +23,8 @@ class Finding:
     code : short and stable, e.g. "bend-radius".
     severity : info, warning or error.
     where : mark of the part or name of the node.
-    value, limit : what was found and what is allowed, in the unit the message names.
+    value, limit : what was found and what is allowed.
+    unit : of both.
     message : one sentence, with advice.
     """
 
@@ -32,4 +33,5 @@ class Finding:
     where: str
     value: float
     limit: float
+    unit: str
     message: str

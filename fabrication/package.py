@@ -299,13 +299,21 @@ def _net_report(result: gs.OptimizedNet, seconds: float) -> Report:
 def _loop_findings(closed: Report, fitted: Fit) -> list[Finding]:
     """Errors where the files do not close back onto the design or the strips do not fit."""
     measures = (
-        ("closure", closed["worst"], closed["max_mm"], CLOSURE_LIMIT, "mm from the design"),
-        ("volume", "all", closed["volume_ppm"], VOLUME_LIMIT, "ppm between sheet and solid"),
-        ("clash", fitted.worst, fitted.max_mm3, CLASH_LIMIT, "mm3 shared by two strips"),
+        ("closure", closed["worst"], closed["max_mm"], CLOSURE_LIMIT, "mm", "from the design"),
+        ("volume", "all", closed["volume_ppm"], VOLUME_LIMIT, "ppm", "between sheet and solid"),
+        ("clash", fitted.worst, fitted.max_mm3, CLASH_LIMIT, "mm3", "shared by two strips"),
     )
     return [
-        Finding(code, Severity.ERROR, where, value, limit, f"{value:.4g} {what}, {limit:g} allowed")
-        for code, where, value, limit, what in measures
+        Finding(
+            code,
+            Severity.ERROR,
+            where,
+            value,
+            limit,
+            unit,
+            f"{value:.4g} {unit} {what}, {limit:g} allowed",
+        )
+        for code, where, value, limit, unit, what in measures
         if value > limit
     ]
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
+from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import KernelError
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
@@ -54,8 +55,6 @@ except ImportError as error:  # pragma: no cover - depends on the machine
 _TOLERANCE = 1e-6
 _VOLUME_ACCURACY = 1e-7
 _SAMPLES_PER_BAY = 2
-COLOURS = {1: (0.80, 0.52, 0.25), 2: (0.36, 0.47, 0.58)}
-"""sRGB colours of families 1 and 2."""
 
 
 def solids(structure: Structure, parts: Sequence[FlatPart]) -> list[build123d.Solid]:
@@ -70,7 +69,7 @@ def solids(structure: Structure, parts: Sequence[FlatPart]) -> list[build123d.So
     for lamella, part in zip(structure.lamellas, parts, strict=True):
         solid = build123d.Solid(lamella_solid(lamella, part))
         solid.label = lamella.mark
-        solid.color = build123d.Color(*COLOURS[lamella.family])
+        solid.color = build123d.Color(*FAMILY_COLOURS[lamella.family])
         made.append(solid)
     return made
 

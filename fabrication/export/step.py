@@ -10,8 +10,8 @@ import cadquery
 from cadquery.occ_impl.exporters.assembly import exportAssembly
 from OCP.Message import Message
 
+from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
-from fabrication.solid import COLOURS
 from fabrication.structures import Structure
 
 
@@ -27,7 +27,7 @@ def assembly(
     """
     whole = cadquery.Assembly(name=name)
     for solid, lamella in zip(solids, structure.lamellas, strict=True):
-        colour = cadquery.Color(*COLOURS[lamella.family])
+        colour = cadquery.Color(*FAMILY_COLOURS[lamella.family])
         whole.add(cadquery.Shape.cast(solid.wrapped), name=lamella.mark, color=colour)
     return whole
 

@@ -95,6 +95,7 @@ class SlotJoint(Joint):
                         where=node.name,
                         value=float(len(node.crossings)),
                         limit=2.0,
+                        unit="lamellas",
                         message=f"{len(node.crossings)} lamellas end at {node.name}; a slot joint "
                         "connects two. The strips stop short of each other: add a connector.",
                     )
@@ -107,6 +108,7 @@ class SlotJoint(Joint):
                         where=node.name,
                         value=float(np.degrees(node.angle)),
                         limit=float(np.degrees(_SHARPEST)),
+                        unit="degrees",
                         message=f"The lamellas meet at {np.degrees(node.angle):.1f} degrees at "
                         f"{node.name}: the slot becomes too long. Open the node angle.",
                     )

@@ -21,6 +21,10 @@ from gridshell.errors import SolveError
 from gridshell.solve.constraint import Evaluation, Pattern
 
 
+_ONE_THREAD_BELOW = 20_000
+"""Unknowns below which a second thread costs more than it gives."""
+
+
 class NormalEquations:
     """The upper triangle of ``J^T W J`` and ``J^T W r`` with a constant pattern.
 
@@ -137,12 +141,17 @@ class _Pardiso:
         self._matrix.data[:] = data
         phases = (22, 33) if self._analysed else (11, 22, 33)
         result = right
+        library = self._solver.libmkl
+        before = library.MKL_Set_Num_Threads_Local(1) if len(right) < _ONE_THREAD_BELOW else None
         try:
             for phase in phases:
                 self._solver.set_phase(phase)
                 result = self._solver._call_pardiso(self._matrix, right)
         except PyPardisoError as error:
             raise SolveError("The linear system could not be factored", value=str(error)) from error
+        finally:
+            if before is not None:
+                library.MKL_Set_Num_Threads_Local(before)
         self._analysed = True
         return np.asarray(result)
 
