@@ -97,7 +97,7 @@ def _slots(part: FlatPart) -> Iterator[Finding]:
                 f"Only {web:.2f} mm are left between the slots for {a.partner} and {b.partner} in "
                 f"{part.mark}. Use fewer lamellas or a thinner strip.",
             )
-    for slot in part.slots[:1] + part.slots[-1:]:
+    for slot in dict.fromkeys(part.slots[:1] + part.slots[-1:]):
         web = min(slot.x, part.length - slot.x) - slot.width / 2.0
         if web < part.thickness:
             yield Finding(

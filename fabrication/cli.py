@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -35,8 +35,6 @@ def main() -> None:
     """Run the command; mistakes of input end with one message and exit code 2."""
     try:
         app()
-    except KeyboardInterrupt:
-        _fail("Interrupted. Nothing was written.", 130)
     except Exception as error:
         from gridshell.errors import GridshellError
 
@@ -66,7 +64,10 @@ def run(
     from fabrication.project import read_project
 
     content = read_project(project)
-    report = _run_with_progress(content, out, project.parent, quiet)
+    try:
+        report = _run_with_progress(content, out, project.parent, quiet)
+    except KeyboardInterrupt:
+        _fail("Interrupted. Nothing was written.", 130)
     if not quiet:
         _summary(report, out)
     if any(finding["severity"] == "error" for finding in report["findings"]):
@@ -148,6 +149,6 @@ def _plain(text: str) -> str:
     return escape(text)
 
 
-def _fail(message: str, code: int) -> None:
+def _fail(message: str, code: int) -> NoReturn:
     typer.echo(f"gridshell: {message}", err=True)
     sys.exit(code)

@@ -30,7 +30,8 @@ class Node:
     name : "N1", "N2", ...: the net's vertex number plus one, the same at every export.
     position : (3,) mm.
     axis : (3,) unit; perpendicular to both lamellas, so that both strips stand along it.
-    angle : between the lamellas of families 1 and 2, in (0, pi); None where only one passes.
+    angle : turn from the lamella of family 1 to that of family 2, counter-clockwise about the
+        axis (eq. 4), in (0, pi); None where only one passes.
     crossings : the lamellas here, family 1 first.
     star_tilt : angle between the axis and the normal of the node's vertex star, radians.
     """

@@ -1,14 +1,12 @@
 """From a project to the folder a shop gets: every stage once, in order.
 
-Files are written into a folder beside the target and moved in at the end, so a run that fails
-leaves nothing half-written behind.
+Files are written into a folder beside the target and moved in at the end (``delivery``), so a run
+that fails leaves nothing half-written behind.
 """
 
 from __future__ import annotations
 
 import json
-import shutil
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -20,7 +18,7 @@ from typing import Any
 import fabrication.stock as stock
 import gridshell as gs
 from fabrication.checks import check
-from fabrication.errors import OutputError
+from fabrication.delivery import draft_folder, move_in
 from fabrication.finding import Finding, Severity
 from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
@@ -115,9 +113,9 @@ def run(
     """
     out = Path(out)
     clock = _Clock(announce)
-    with _beside(out) as draft:
+    with draft_folder(out) as draft:
         report = _write(project, _design(project, Path(folder), clock), draft, clock)
-        _move_in(draft, out)
+        move_in(draft, out, stale=("sheets/sheet-*.dxf",))
     return report
 
 
@@ -316,47 +314,3 @@ def _loop_findings(closed: Report, fitted: Fit) -> list[Finding]:
         for code, where, value, limit, unit, what in measures
         if value > limit
     ]
-
-
-# ---- folders -----------------------------------------------------------------------------------
-
-
-@contextmanager
-def _beside(out: Path) -> Iterator[Path]:
-    """A fresh folder beside *out*, gone afterwards whatever happens."""
-    if out.exists() and not out.is_dir():
-        raise OutputError(
-            "The output folder is a file", where=str(out), advice="another name after --out"
-        )
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        draft = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
-        if out.is_dir():
-            probe = Path(tempfile.mkdtemp(prefix=".probe-", dir=out))
-            probe.rmdir()
-    except OSError as error:
-        raise OutputError(
-            "The output folder cannot be written",
-            where=str(out),
-            value=error.strerror or type(error).__name__,
-            advice="a folder you may write to",
-        ) from None
-    try:
-        yield draft
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-
-
-def _move_in(draft: Path, out: Path) -> None:
-    """Replace in *out* what *draft* holds; everything else there stays."""
-    try:
-        out.mkdir(exist_ok=True)
-        for entry in sorted(draft.iterdir()):
-            target = out / entry.name
-            if target.is_dir() and not target.is_symlink():
-                shutil.rmtree(target)
-            entry.replace(target)
-    except OSError as error:
-        raise OutputError(
-            "The output folder cannot be written", where=str(out), value=error.strerror or ""
-        ) from None

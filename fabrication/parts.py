@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from fabrication.cut import Slot, area, outline
 from fabrication.joints import Joint
 from fabrication.structures import Structure
 from fabrication.unroll import Development, unroll
+from gridshell import SettingError
 from gridshell.arrays import Floats
 
 
@@ -56,12 +58,19 @@ class FlatPart:
 
 
 def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
-    """One part per lamella, in the structure's order."""
+    """One part per lamella, in the structure's order.
+
+    Raises
+    ------
+    SettingError
+        When slots run into each other or out of the strip.
+    """
     cuts = joint.cuts(structure)
     width, thickness = structure.profile.width, structure.profile.thickness
     parts = []
     for lamella in structure.lamellas:
         slots = cuts[lamella.mark]
+        _require_room(lamella.mark, slots, lamella.length)
         developed = unroll(lamella, width)
         parts.append(
             FlatPart(
@@ -75,6 +84,21 @@ def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
             )
         )
     return tuple(parts)
+
+
+def _require_room(mark: str, slots: Sequence[Slot], length: float) -> None:
+    """Refuse slots that run into each other or out of the strip: there is no part to cut."""
+    walls = [0.0, *(w for s in slots for w in (s.x - s.width / 2, s.x + s.width / 2)), length]
+    for i, (a, b) in enumerate(pairwise(walls)):
+        if i % 2 == 0 and not a < b:
+            beside = [s.node for s in slots[max(0, i // 2 - 1) : i // 2 + 1]]
+            raise SettingError(
+                "A slot runs into the next one or out of its strip",
+                where=f"{mark}, {' and '.join(beside)}",
+                value=f"{b - a:.2f} mm between them",
+                limit="> 0",
+                advice="fewer lamellas, a thinner strip, or a longer overhang",
+            )
 
 
 def _labels(

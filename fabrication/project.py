@@ -13,13 +13,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    model_validator,
+)
 
 from fabrication.errors import ProjectError
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-Distance = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-Range = tuple[float, float]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[Number, Field(gt=0.0)]
+Distance = Annotated[Number, Field(ge=0.0)]
+Whole = Annotated[int, Field(strict=True)]
+Range = tuple[Number, Number]
 
 
 class _Section(BaseModel):
@@ -103,7 +113,7 @@ class AsymptoticPatchSection(_Section):
     layout: Literal["asymptotic"]
     p: Range
     q: Range
-    lamellas: tuple[int, int]
+    lamellas: tuple[Whole, Whole]
 
 
 class BisectingPatchSection(_Section):
@@ -114,7 +124,7 @@ class BisectingPatchSection(_Section):
 
     layout: Literal["bisecting"]
     v: Range
-    cells: int
+    cells: Whole
     u: Range | None = None
 
 
@@ -135,11 +145,11 @@ class NetSection(_Section):
     """What the net must be and what holds its shape meanwhile."""
 
     kind: Literal["asymptotic"] = "asymptotic"
-    angle: Annotated[float, Field(gt=0.0, lt=180.0)] | None = None
+    angle: Annotated[Number, Field(gt=0.0, lt=180.0)] | None = None
     anchor: Literal["free", "boundary-pinned", "boundary-glide"]
     keep_to_surface: bool = True
     skin: Literal["D1", "D2"] = "D1"
-    steps: Annotated[int, Field(ge=1)] = 30
+    steps: Annotated[Whole, Field(ge=1)] = 30
     tolerance: Positive = 1e-9
 
 
@@ -157,7 +167,11 @@ class ProfileSection(_Section):
 
     width: Positive
     thickness: Positive
-    material: Literal["S235", "stainless", "birch-ply"] | MaterialSection
+    material: Annotated[
+        Annotated[Literal["S235", "stainless", "birch-ply"], Tag("known material")]
+        | Annotated[MaterialSection, Tag("own material")],
+        Discriminator(lambda value: f"{'own' if isinstance(value, dict) else 'known'} material"),
+    ]
     overhang: Positive | None = None
 
 
@@ -240,23 +254,42 @@ def read_project(path: Path | str) -> Project:
 
 
 def _explained(path: Path, error: ValidationError) -> ProjectError:
-    """The first thing that is wrong, as one sentence; the count of the others."""
-    first, *others = error.errors(include_url=False)
-    key = _key(first["loc"])
-    more = f" ({len(others)} more after this one)" if others else ""
+    """The first thing that is wrong, unknown keys before all others, as one sentence."""
+    problems = error.errors(include_url=False)
+    first = min(problems, key=lambda problem: problem["type"] != "extra_forbidden")
+    key, location = _key(first["loc"]), first["loc"]
+    others = len({_key(problem["loc"]) for problem in problems}) - 1
+    more = f" ({others} more after this one)" if others else ""
+    where = f"{path}, {key}" if key else str(path)
     message = first["msg"].removeprefix("Value error, ")
     if first["type"] == "extra_forbidden":
-        where = f"{path}, {key}"
-        return ProjectError(f"Unknown key{more}", where=where, advice=_nearest(first["loc"]))
+        return ProjectError(f"Unknown key{more}", where=where, advice=_nearest_key(location))
+    if first["type"] == "missing" and isinstance(location[-1], int):
+        limit = f"{location[-1] + 1} numbers"
+        where, value = f"{path}, {_key(location[:-1])}", repr(first["input"])
+        return ProjectError(f"A key has a wrong value{more}", where=where, value=value, limit=limit)
     if first["type"] == "missing":
-        return ProjectError(f"A key is missing{more}", where=f"{path}, {key}", advice=f"add {key}")
+        return ProjectError(f"A key is missing{more}", where=where, advice=f"add {key}")
+    if first["type"] == "union_tag_invalid":
+        return _unknown_choice(where, more, first["ctx"])
     if not key:
-        return ProjectError(f"{message[0].upper()}{message[1:]}{more}", where=str(path))
+        return ProjectError(f"{message[0].upper()}{message[1:]}{more}", where=where)
     return ProjectError(
         f"A key has a wrong value{more}",
-        where=f"{path}, {key}",
+        where=where,
         value=repr(first["input"]),
         limit=message[0].lower() + message[1:],
+    )
+
+
+def _unknown_choice(where: str, more: str, context: dict[str, str]) -> ProjectError:
+    choices = context["expected_tags"].replace("'", "")
+    return ProjectError(
+        f"A key has a wrong value{more}",
+        where=f"{where}.{context['discriminator'].strip(chr(39))}",
+        value=repr(context["tag"]),
+        limit=choices,
+        advice=_nearest(context["tag"], choices.split(", ")),
     )
 
 
@@ -268,7 +301,7 @@ def _sections() -> dict[str, type[_Section]]:
         "profile": ProfileSection,
         "joint": SlotSection,
         "sheet": SheetSection,
-        "MaterialSection": MaterialSection,
+        "own material": MaterialSection,
     }
     for union in (SurfaceSection, PatchSection):
         section: type[_Section]
@@ -284,14 +317,17 @@ def _key(location: tuple[int | str, ...]) -> str:
     fields = {name for section in sections for name in section.model_fields}
     *path, last = location or ("",)
     shown = [part for part in path if isinstance(part, int) or part in fields]
-    branch = (last in _sections() and last not in fields) or str(last).startswith("literal[")
+    branch = last not in fields and (last in _sections() or str(last).endswith(" material"))
     return ".".join(str(part) for part in (shown if branch else [*shown, last]))
 
 
-def _nearest(location: tuple[int | str, ...]) -> str:
+def _nearest_key(location: tuple[int | str, ...]) -> str:
     """Advice: the key of the same section that looks most like the unknown one."""
     sections = _sections()
     inside = [sections[str(part)] for part in location[:-1] if str(part) in sections]
-    known = list((inside[-1] if inside else Project).model_fields)
-    match = difflib.get_close_matches(str(location[-1]), known, n=1, cutoff=0.5)
+    return _nearest(str(location[-1]), list((inside[-1] if inside else Project).model_fields))
+
+
+def _nearest(word: str, known: list[str]) -> str:
+    match = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
     return f"'{match[0]}'" if match else f"one of {', '.join(known)}"

@@ -9,7 +9,7 @@ which makes the solid watertight by construction.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from gridshell.arrays import Floats, unit
 
 try:
     import build123d
+    from OCP import Standard
     from OCP.BRep import BRep_Builder
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepGProp import BRepGProp
@@ -52,9 +53,18 @@ except ImportError as error:  # pragma: no cover - depends on the machine
         advice="install the project again; on a bare Linux also the system package libgl1",
     ) from error
 
+_KERNEL_ERRORS = tuple(
+    kind
+    for kind in vars(Standard).values()
+    if isinstance(kind, type) and issubclass(kind, Exception)
+)
+"""The kernel's own exceptions have no common base in Python."""
+
 _TOLERANCE = 1e-6
 _VOLUME_ACCURACY = 1e-7
-_SAMPLES_PER_BAY = 2
+_SAMPLES_PER_BAY = (2, 4, 8, 16, 32, 64)
+_ACCURACY = 1e-3
+"""Of the corner curves, mm: more samples are taken until they reach it."""
 
 
 def solids(structure: Structure, parts: Sequence[FlatPart]) -> list[build123d.Solid]:
@@ -82,7 +92,12 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
     KernelError
         When the kernel does not find it valid.
     """
-    solid = _Builder(_sides(lamella, part), part.thickness).solid(part.outline)
+    try:
+        solid = _Builder(_sides(lamella, part), part.thickness).solid(part.outline)
+    except _KERNEL_ERRORS as error:
+        raise KernelError(
+            "The kernel cannot make a lamella's solid", where=lamella.mark, value=str(error)
+        ) from error
     if not BRepCheck_Analyzer(solid, True, True).IsValid():
         raise KernelError(
             "The kernel refuses a lamella's solid",
@@ -119,33 +134,44 @@ class _Side:
 
 
 def _sides(lamella: Lamella, part: FlatPart) -> tuple[_Side, _Side]:
-    """The sides at +t/2 and -t/2 across; u is x on the flat strip."""
-    u = _sample_stations(lamella) - lamella.start
+    """The sides at +t/2 and -t/2 across; u is x on the flat strip.
+
+    Samples are doubled until the splines meet the strip's own map half-way between them.
+    """
     half_t, half_h = part.thickness / 2.0, part.width / 2.0
     corners = [(y, z) for y in (half_t, -half_t) for z in (-half_h, half_h)]
 
     def corner_curves(x: Floats) -> Floats:
-        s = x + lamella.start
-        f = lamella.frames(s)
+        f = lamella.frames(x + lamella.start)
         return np.concatenate([f.points + y * f.b + z * f.n for y, z in corners], axis=1)
 
-    step = 1e-3 * part.length / len(u)
-    ends = [
-        (corner_curves(np.array([x + step])) - corner_curves(np.array([x - step])))[0] / (2 * step)
+    for per_bay in _SAMPLES_PER_BAY:
+        u = _sample_stations(lamella, per_bay) - lamella.start
+        spline = _clamped_spline(u, corner_curves)
+        between = (u[1:] + u[:-1]) / 2.0
+        if np.abs(spline(between) - corner_curves(between)).max() <= _ACCURACY:
+            break
+    poles = spline.c.reshape(-1, 4, 3)
+    near, far = (_Side(spline.t, poles[:, 2 * i], poles[:, 2 * i + 1], part.width) for i in (0, 1))
+    return near, far
+
+
+def _clamped_spline(u: Floats, curves: Callable[[Floats], Floats]) -> BSpline:
+    """The cubic spline through *curves* at *u*, with their slopes at both ends."""
+    step = 1e-3 * float(u[-1] - u[0]) / len(u)
+    slopes = [
+        (curves(np.array([x + step])) - curves(np.array([x - step])))[0] / (2.0 * step)
         for x in (u[0], u[-1])
     ]
-    spline = make_interp_spline(u, corner_curves(u), k=3, bc_type=([(1, ends[0])], [(1, ends[1])]))
-    poles = spline.c.reshape(-1, 4, 3)
-    return tuple(  # type: ignore[return-value]
-        _Side(spline.t, poles[:, 2 * i], poles[:, 2 * i + 1], part.width) for i in (0, 1)
-    )
+    boundary = ([(1, slopes[0])], [(1, slopes[1])])
+    return make_interp_spline(u, curves(u), k=3, bc_type=boundary)
 
 
-def _sample_stations(lamella: Lamella) -> Floats:
+def _sample_stations(lamella: Lamella, per_bay: int) -> Floats:
     """Cut ends, nodes, and points between them in every bay."""
     inside = lamella.stations[(lamella.stations > lamella.start) & (lamella.stations < lamella.end)]
     stops = np.unique(np.r_[lamella.start, inside, lamella.end])
-    share = np.arange(_SAMPLES_PER_BAY) / _SAMPLES_PER_BAY
+    share = np.arange(per_bay) / per_bay
     between = (stops[:-1, None] + np.diff(stops)[:, None] * share).ravel()
     return np.asarray(np.r_[between, stops[-1]])
 
@@ -177,7 +203,7 @@ class _Builder:
         """The solid over *outline* (k, 2), counter-clockwise with axis-parallel edges."""
         corners = [side.points(outline[:, 0], outline[:, 1]) for side in self.sides]
         lines = [_outline_line(outline, i) for i in range(len(outline))]
-        self.tolerance = _wall_tolerance(corners, lines)
+        self.tolerance = _wall_tolerance(corners, lines, self.thickness)
         vertices = [[self._vertex(p) for p in points] for points in corners]
         across = [
             self._straight(corners[0][i], corners[1][i], vertices[0][i], vertices[1][i])
@@ -345,19 +371,20 @@ def _wall_planes(corners: Sequence[Floats], walls: Sequence[int]) -> tuple[Float
     return middle, normal, offset
 
 
-def _wall_tolerance(corners: Sequence[Floats], lines: Sequence[_Line]) -> float:
-    """A tolerance that covers what walls are out of plane and rulings off their length.
+def _wall_tolerance(corners: Sequence[Floats], lines: Sequence[_Line], thickness: float) -> float:
+    """A tolerance that covers what walls are out of plane and straight edges off their length.
 
-    Both come from interpolating the corner curves and stay around 1e-6 mm.
+    Both come from interpolating the corner curves and stay around 1e-6 mm on smooth strips.
     """
     walls = [i for i, line in enumerate(lines) if not line.along_u]
     _, _, offset = _wall_planes(corners, walls)
     heights = np.array([lines[i].high - lines[i].low for i in walls])
-    stretch = [
+    across = np.abs(np.linalg.norm(corners[0] - corners[1], axis=1) - thickness)
+    up = [
         np.abs(np.linalg.norm(np.roll(side, -1, axis=0)[walls] - side[walls], axis=1) - heights)
         for side in corners
     ]
-    return max(_TOLERANCE, 2.0 * float(offset.max()), 2.0 * float(np.max(stretch)))
+    return max(_TOLERANCE, *(2.0 * float(np.max(x)) for x in (offset, across, *up)))
 
 
 def _side_surface(side: _Side) -> Geom_BSplineSurface:

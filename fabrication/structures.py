@@ -19,7 +19,7 @@ from fabrication.lamella import AxisCurve, Lamella, axis_curve
 from fabrication.node import Crossing, Node
 from fabrication.stock import Profile
 from gridshell import DiagonalMesh, Polyline, SettingError, polylines
-from gridshell.arrays import Floats, Vectors, unit
+from gridshell.arrays import Floats, Mask, Vectors, unit
 
 SEAM = 1.0
 """Gap left between the two ends of a closed lamella, mm."""
@@ -70,7 +70,8 @@ def structure(net: DiagonalMesh, profile: Profile, *, overhang: float | None = N
         for line in lines
     ]
     node_axes, tangents = _node_axes(net, lines, axes)
-    lamellas = _lamellas(net, lines, axes, node_axes, profile, overhang)
+    crossed = np.asarray(np.isfinite(tangents).all(axis=(1, 2)))
+    lamellas = _lamellas(net, lines, axes, node_axes, crossed, profile, overhang)
     return Structure(lamellas, _nodes(net, lamellas, node_axes, tangents), profile)
 
 
@@ -140,6 +141,7 @@ def _lamellas(
     lines: list[Polyline],
     axes: list[AxisCurve],
     node_axes: Vectors,
+    crossed: Mask,
     profile: Profile,
     overhang: float,
 ) -> tuple[Lamella, ...]:
@@ -154,7 +156,7 @@ def _lamellas(
                 family=line.family,
                 nodes=line.vertices,
                 axis=axis,
-                normals=_normal_spline(axis, node_axes[line.vertices]),
+                normals=_normal_spline(axis, node_axes[line.vertices], crossed[line.vertices]),
                 start=start,
                 end=end,
             )
@@ -162,10 +164,12 @@ def _lamellas(
     return tuple(lamellas)
 
 
-def _normal_spline(axis: AxisCurve, normals: Vectors) -> CubicSpline:
+def _normal_spline(axis: AxisCurve, normals: Vectors, crossed: Mask) -> CubicSpline:
+    """Through the axes of the nodes where the strip is held; beyond them its twist goes on."""
     if axis.closed:
         return CubicSpline(axis.stations, np.vstack([normals, normals[:1]]), bc_type="periodic")
-    return CubicSpline(axis.stations, normals)
+    held = crossed if np.count_nonzero(crossed) > 1 else np.ones_like(crossed)
+    return CubicSpline(axis.stations[held], normals[held])
 
 
 def _ends(
@@ -192,12 +196,12 @@ def _nodes(
             crossings[vertex].append(Crossing(i, station))
     star = _star_normals(net)
     tilt = np.arccos(np.clip(np.abs(np.einsum("nc,nc->n", node_axes, star)), 0.0, 1.0))
-    angle = _angles(tangents)
+    angle = _angles(tangents, node_axes)
     return tuple(
         Node(
             name=f"N{v + 1}",
             position=net.vertices[v],
-            axis=node_axes[v],
+            axis=_axis(node_axes[v], crossings[v], lamellas),
             angle=None if np.isnan(angle[v]) else float(angle[v]),
             crossings=tuple(crossings[v]),
             star_tilt=float(tilt[v]),
@@ -206,6 +210,16 @@ def _nodes(
     )
 
 
-def _angles(tangents: Floats) -> Floats:
-    across = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
-    return np.asarray(np.arctan2(across, np.einsum("nc,nc->n", tangents[:, 0], tangents[:, 1])))
+def _axis(axis: Floats, crossings: list[Crossing], lamellas: tuple[Lamella, ...]) -> Floats:
+    """The node axis, or where one lamella passes alone, the direction of its width."""
+    if len(crossings) != 1:
+        return axis
+    (alone,) = crossings
+    return np.asarray(lamellas[alone.lamella].frames(np.array([alone.station])).n[0])
+
+
+def _angles(tangents: Floats, axes: Vectors) -> Floats:
+    """(n,) turn from the line of family 1 to that of family 2, counter-clockwise (eq. 4)."""
+    first, second = tangents[:, 0], tangents[:, 1]
+    across = np.einsum("nc,nc->n", np.cross(first, second), axes)
+    return np.asarray(np.arctan2(across, np.einsum("nc,nc->n", first, second)) % np.pi)

@@ -137,7 +137,7 @@ def read_dxf(path: Path | str) -> tuple[DxfPart, ...]:
     """
     try:
         document = readfile(path)
-    except (OSError, DXFError) as error:
+    except (OSError, DXFError, ValueError, LookupError, StopIteration) as error:
         raise FileError("The sheet cannot be read", where=str(path), value=str(error)) from None
     if document.units != units.MM:
         raise FileError("The sheet is not in mm", where=str(path), value=f"{document.units}")
@@ -151,5 +151,7 @@ def _read_part(path: Path | str, entity: object) -> DxfPart:
             where=f"{path}, {entity}",
         )
     points = np.array(entity.get_points("xy"), dtype=np.float64)
-    mark = next(str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000)
-    return DxfPart(mark, points - points[0])
+    marks = [str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000]
+    if len(points) < 3 or not marks:
+        raise FileError("An outline is incomplete", where=f"{path}, {entity}")
+    return DxfPart(marks[0], points - points[0])

@@ -1,0 +1,198 @@
+"""Small structures the tests share, built once: exact and optimised nets, a tube, a saddle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import radians
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+import fabrication as fab
+import gridshell as gs
+from fabrication.cut import Slot, outline
+from fabrication.unroll import Development
+from gridshell.mesh import grid_quads
+
+settings.register_profile("no deadline", deadline=None)
+settings.load_profile("no deadline")
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A net and what is built of it."""
+
+    control: gs.ControlMesh
+    net: gs.DiagonalMesh
+    structure: fab.Structure
+    parts: tuple[fab.FlatPart, ...]
+
+    def lamella(self, mark: str) -> fab.Lamella:
+        return next(one for one in self.structure.lamellas if one.mark == mark)
+
+    def part(self, mark: str) -> fab.FlatPart:
+        return next(one for one in self.parts if one.mark == mark)
+
+
+@dataclass(frozen=True, eq=False)
+class Files:
+    """A design as a shop gets it."""
+
+    solids: list[Any]
+    nested: tuple[fab.NestedSheet, ...]
+    sheets: list[Path]
+    step: Path
+    net: gs.DiagonalMesh
+
+
+# ---- stock and nets -------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="session")
+def profile() -> fab.Profile:
+    return fab.Profile(width=100.0, thickness=2.5, material=fab.STAINLESS)
+
+
+@pytest.fixture(scope="session")
+def sheet() -> fab.Sheet:
+    return fab.Sheet(12000.0, 1500.0)
+
+
+def _design(control: gs.ControlMesh, profile: fab.Profile) -> Design:
+    net = gs.diagonal_meshes(control)[0]
+    structure = fab.structure(net, profile)
+    return Design(control, net, structure, fab.flat_parts(structure, fab.SlotJoint()))
+
+
+@pytest.fixture(scope="session")
+def catenoid(profile: fab.Profile) -> Design:
+    """Five lamellas each way on an exact catenoid: every angle is 90 degrees."""
+    patch = gs.AsymptoticPatch(p=(-0.5, 0.5), q=(-0.5, 0.5), lamellas=(5, 5))
+    return _design(gs.control_patch(gs.Catenoid(4000.0), patch), profile)
+
+
+@pytest.fixture(scope="session")
+def enneper(profile: fab.Profile) -> Design:
+    """Five lamellas each way, optimised from Enneper's surface to 60 degrees."""
+    patch = gs.AsymptoticPatch(p=(-0.5, 0.5), q=(-0.5, 0.5), lamellas=(5, 5))
+    start = gs.control_patch(gs.Enneper(4000.0), patch)
+    result = gs.optimize(start, gs.a_net(angle=radians(60)), anchor=gs.Free())
+    return _design(result.require().control, profile)
+
+
+@pytest.fixture(scope="session")
+def hypar(profile: fab.Profile) -> Design:
+    """Three straight lamellas one way and four the other."""
+    patch = gs.AsymptoticPatch(p=(-0.3, 0.3), q=(-0.2, 0.4), lamellas=(3, 4))
+    return _design(gs.control_patch(gs.Hypar(6000.0), patch), profile)
+
+
+@pytest.fixture(scope="session")
+def pair(profile: fab.Profile) -> Design:
+    """Two lamellas each way with two nodes each."""
+    patch = gs.AsymptoticPatch(p=(-0.15, 0.15), q=(-0.15, 0.15), lamellas=(2, 2))
+    return _design(gs.control_patch(gs.Catenoid(4000.0), patch), profile)
+
+
+@pytest.fixture(scope="session")
+def ring(profile: fab.Profile) -> Design:
+    """A catenoid all around, crossed by helical lamellas."""
+    patch = gs.BisectingPatch(v=(-0.6, 0.6), cells=24)
+    return _design(gs.control_patch(gs.Catenoid(4000.0), patch), profile)
+
+
+@pytest.fixture(scope="session")
+def tube(profile: fab.Profile) -> Design:
+    """The edges of a grid around a hyperboloid: closed hoops and open meridians."""
+    around, across = 32, 6
+    angle = 2.0 * np.pi * np.arange(around) / around
+    angle, z = np.meshgrid(angle, np.linspace(-600.0, 600.0, across + 1), indexing="ij")
+    radius = 1500.0 * np.hypot(1.0, z / 3000.0)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=-1).reshape(-1, 3)
+    mesh = gs.QuadMesh(points, grid_quads(around, across, ring=True))
+    return _design(gs.control_mesh(mesh), profile)
+
+
+@pytest.fixture(scope="session")
+def saddle_mesh() -> gs.QuadMesh:
+    """Six sectors of rhombi around one vertex of valence six, lifted to a monkey saddle."""
+    size, rays = 4, 2.0 * np.pi * np.arange(7) / 6
+    corners, quads = [], []
+    for a, b in pairwise(rays):
+        i, j = np.meshgrid(np.arange(size + 1), np.arange(size + 1), indexing="ij")
+        x, y = (i * f(a) + j * f(b) for f in (np.cos, np.sin))
+        quads.append(grid_quads(size, size) + len(corners) * (size + 1) ** 2)
+        corners.append(np.stack([x.ravel(), y.ravel()], axis=1))
+    flat, number = np.unique(np.round(np.concatenate(corners), 9), axis=0, return_inverse=True)
+    x, y = flat.T
+    points = 600.0 * np.stack([x, y, 0.02 * (x**3 - 3.0 * x * y * y)], axis=1)
+    return gs.QuadMesh(points, number[np.concatenate(quads)])
+
+
+@pytest.fixture(scope="session")
+def saddle(saddle_mesh: gs.QuadMesh, profile: fab.Profile) -> Design:
+    """A net with one node where six lamellas end."""
+    control = gs.as_control_mesh(saddle_mesh)
+    nets = gs.diagonal_meshes(control)
+    net = next(net for net in nets if net.stars.count.max() == 6)
+    structure = fab.structure(net, profile)
+    return Design(control, net, structure, fab.flat_parts(structure, fab.SlotJoint()))
+
+
+# ---- parts and files ------------------------------------------------------------------------
+
+
+def recut(part: fab.FlatPart, slots: Sequence[Slot]) -> fab.FlatPart:
+    """The same strip with other slots."""
+    return replace(part, slots=tuple(slots), outline=outline(part.length, part.width, slots))
+
+
+@pytest.fixture(scope="session")
+def with_slots() -> Callable[[fab.FlatPart, Sequence[Slot]], fab.FlatPart]:
+    return recut
+
+
+@pytest.fixture(scope="session")
+def strip() -> Callable[..., fab.FlatPart]:
+    """A strip of any size that belongs to no structure."""
+
+    def build(
+        mark: str, length: float, slots: Sequence[Slot] = (), width: float = 100.0
+    ) -> fab.FlatPart:
+        return fab.FlatPart(
+            mark=mark,
+            outline=outline(length, width, slots),
+            slots=tuple(slots),
+            labels=(),
+            width=width,
+            thickness=2.5,
+            development=Development(length, np.zeros(0), 0.0, 0.0),
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def files(tmp_path_factory: pytest.TempPathFactory, sheet: fab.Sheet) -> Callable[[Design], Files]:
+    """Write a design once: sheets, assembly and net, all read back from disk later."""
+    written: dict[int, Files] = {}
+
+    def write(design: Design) -> Files:
+        if id(design) not in written:
+            folder = tmp_path_factory.mktemp("files")
+            solids = fab.solids(design.structure, design.parts)
+            nested = fab.nest(design.parts, sheet)
+            step = folder / "structure.step"
+            fab.write_step(fab.assembly(solids, design.structure, name="shell"), step)
+            gs.write_net(folder / "net.json", design.control)
+            net = gs.diagonal_meshes(gs.read_net(folder / "net.json"))[0]
+            sheets = fab.write_dxf(nested, folder / "sheets")
+            written[id(design)] = Files(solids, nested, sheets, step, net)
+        return written[id(design)]
+
+    return write

@@ -1,0 +1,82 @@
+import cadquery
+import pytest
+
+import fabrication as fab
+from fabrication.colours import FAMILY_COLOURS
+from fabrication.errors import OutputError
+from fabrication.solid import volume
+
+pytestmark = pytest.mark.xdist_group("kernel")
+
+
+@pytest.fixture(scope="module")
+def imported(pair, files):
+    """The four lamellas as cadquery reads them from the file."""
+    return cadquery.importers.importStep(str(files(pair).step)).solids().vals()
+
+
+@pytest.fixture(scope="module")
+def tree(pair, files):
+    """The assembly as cadquery reads it from the file."""
+    return cadquery.Assembly.importStep(str(files(pair).step))
+
+
+def test_the_assembly_has_one_named_child_per_lamella(pair, files):
+    whole = fab.assembly(files(pair).solids, pair.structure, name="shell")
+    assert whole.name == "shell"
+    assert [child.name for child in whole.children] == ["A1", "A2", "B1", "B2"]
+
+
+def test_a_file_read_by_cadquery_holds_one_valid_solid_per_lamella(imported):
+    assert len(imported) == 4
+    assert all(body.isValid() for body in imported)
+
+
+def test_volumes_survive_the_file(imported, pair):
+    flat = sorted(part.area * part.thickness for part in pair.parts)
+    assert sorted(volume(body.wrapped) for body in imported) == pytest.approx(flat, rel=20e-6)
+
+
+def test_solids_stay_where_they_stood(imported, pair, files):
+    centres = [tuple(body.center()) for body in files(pair).solids]
+    found = [body.Center().toTuple() for body in imported]
+    assert sorted(found) == [pytest.approx(centre, abs=0.1) for centre in sorted(centres)]
+
+
+def test_names_survive_the_file(tree):
+    assert tree.name == "shell"
+    assert [child.name for child in tree.children] == ["A1", "A2", "B1", "B2"]
+
+
+def test_colours_survive_the_file(tree, pair):
+    for child, lamella in zip(tree.children, pair.structure.lamellas, strict=True):
+        assert child.color.toTuple()[:3] == pytest.approx(FAMILY_COLOURS[lamella.family], abs=1e-3)
+
+
+def test_the_file_is_in_millimetres(pair, files):
+    text = files(pair).step.read_text()
+    assert text.startswith("ISO-10303-21;")
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
+
+
+def test_the_file_carries_no_curves_in_the_parameters_of_faces(pair, files):
+    assert "PCURVE" not in files(pair).step.read_text()
+
+
+def test_as_many_solids_as_lamellas_are_needed(pair, files):
+    with pytest.raises(ValueError, match="argument"):
+        fab.assembly(files(pair).solids[:-1], pair.structure, name="shell")
+
+
+def test_a_folder_that_is_not_there_is_an_error(pair, files, tmp_path):
+    whole = fab.assembly(files(pair).solids[:], pair.structure, name="shell")
+    with pytest.raises(OutputError, match="STEP file cannot be written") as info:
+        fab.write_step(whole, tmp_path / "missing" / "structure.step")
+    assert "structure.step" in info.value.where
+
+
+@pytest.mark.parametrize("name", ["Dächle", "a/b", 'it\'s "quoted"; {ok}', "1"])
+def test_any_name_of_the_whole_can_be_written(pair, files, tmp_path, name):
+    path = tmp_path / "structure.step"
+    fab.write_step(fab.assembly(files(pair).solids, pair.structure, name=name), path)
+    assert [part.mark for part in fab.read_step(path)] == ["A1", "A2", "B1", "B2"]

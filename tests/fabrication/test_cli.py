@@ -1,0 +1,304 @@
+"""The command as people run it: exit codes, and what is said where."""
+
+import json
+import subprocess
+import sys
+from importlib.metadata import version
+
+import pytest
+
+from fabrication import cli
+
+pytestmark = pytest.mark.xdist_group("kernel")
+
+SMALL = """
+name = "small"
+[surface]
+kind = "hypar"
+scale = 6000.0
+[patch]
+layout = "asymptotic"
+p = [-0.2, 0.2]
+q = [-0.2, 0.2]
+lamellas = [3, 3]
+[net]
+anchor = "free"
+[profile]
+width = 100.0
+thickness = 2.5
+material = "stainless"
+[joint]
+kind = "slot"
+[sheet]
+length = 4000.0
+width = 1000.0
+"""
+WEAK = '{ name = "weak", modulus = 2e5, strength = 1.0, density = 7900.0 }'
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a project and return its path."""
+
+    def build(old="", new=""):
+        path = tmp_path / "small.toml"
+        path.write_text(SMALL.replace(old, new) if old else SMALL)
+        return path
+
+    return build
+
+
+@pytest.fixture
+def command(monkeypatch, capsys):
+    """Run the command; its exit code, output and errors."""
+
+    def run(*words):
+        monkeypatch.setattr(sys, "argv", ["gridshell", *map(str, words)])
+        with pytest.raises(SystemExit) as info:
+            cli.main()
+        said = capsys.readouterr()
+        return info.value.code or 0, said.out, said.err
+
+    return run
+
+
+def fresh(code, *words):
+    """Run *code* in a new interpreter with *words* as the command's arguments."""
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, check=False
+    )
+
+
+# ---- good -----------------------------------------------------------------------------------
+
+
+def test_a_good_project_ends_with_0_and_tells_what_was_made(command, write, tmp_path):
+    code, out, err = command("run", write(), "--out", tmp_path / "out")
+    assert (code, err) == (0, "")
+    for said in (
+        "small",
+        "Converged",
+        "6 lamellas",
+        "9 joints",
+        "15.2 m",
+        "1 sheets",
+        "node angles",
+    ):
+        assert said in out
+    assert "error" not in out.replace("error:", "")
+    assert json.loads((tmp_path / "out" / "report.json").read_text())["findings"] == []
+
+
+def test_quiet_says_nothing_at_all_even_from_the_kernel(write, tmp_path):
+    """In a new interpreter, where the kernel still has its own ways to print."""
+    done = fresh(
+        "from fabrication.cli import main; main()",
+        *["run", write(), "--out", tmp_path / "out", "--quiet"],
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (tmp_path / "out" / "structure.step").is_file()
+
+
+def test_check_lists_every_setting_with_its_value(command, write):
+    code, out, err = command("check", write())
+    assert (code, err) == (0, "")
+    assert {"name = small", "[net]", "steps = 30", "[joint]", "clearance = 0.3"} <= set(
+        out.splitlines()
+    )
+
+
+def test_a_quiet_check_says_nothing(command, write):
+    assert command("check", write(), "--quiet") == (0, "", "")
+
+
+def test_check_does_not_write(command, write, tmp_path):
+    path = write()
+    command("check", path)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_version_is_that_of_the_package(command):
+    assert command("--version") == (0, f"gridshell {version('gridshell')}\n", "")
+
+
+def test_help_names_the_commands(command):
+    code, out, _ = command("--help")
+    assert code == 0
+    assert "run" in out
+    assert "check" in out
+
+
+# ---- findings -------------------------------------------------------------------------------
+
+
+def test_findings_of_severity_error_end_with_1_and_are_told(command, write, tmp_path):
+    code, out, err = command("run", write('"stainless"', WEAK), "--out", tmp_path / "out")
+    assert (code, err) == (1, "")
+    assert out.count("error twist: ") == 6
+    assert (tmp_path / "out" / "structure.step").is_file()
+
+
+def finding(severity, number=0):
+    return {
+        "code": "seam",
+        "severity": severity,
+        "where": "A1",
+        "value": 1.0,
+        "limit": 1.0,
+        "message": f"[A{number}] is closed",
+    }
+
+
+@pytest.fixture
+def pretend(monkeypatch):
+    """Let a run return a report with given findings, without making anything."""
+
+    def build(*findings):
+        report = {
+            "name": "[bold]small[/bold]",
+            "net": {"status": "Converged.", "node_angle_deg": {"min": 90.0, "max": 90.0}},
+            "structure": {
+                **{"lamellas": 6, "joints": 9, "total_length_m": 1.0, "mass_kg": 1.0},
+                "sheets": 1,
+            },
+            "closure": {"max_mm": 0.0, "volume_ppm": 0.0},
+            "fit": {"clash_mm3": {"max": 0.0}},
+            "findings": list(findings),
+            "timing": {"fit": 1.0},
+        }
+        monkeypatch.setattr("fabrication.package.run", lambda *args, **kwargs: report)
+
+    return build
+
+
+@pytest.mark.parametrize("severity", ["info", "warning"])
+def test_findings_that_are_no_errors_end_with_0_and_are_told(command, write, pretend, severity):
+    pretend(finding(severity))
+    code, out, _ = command("run", write(), "--out", "out")
+    assert code == 0
+    assert f"{severity} seam: [A0] is closed" in out
+
+
+def test_a_name_in_brackets_is_printed_as_it_is(command, write, pretend):
+    pretend()
+    assert "[bold]small[/bold]" in command("run", write(), "--out", "out")[1]
+
+
+def test_many_findings_are_cut_short_with_their_count(command, write, pretend):
+    pretend(*(finding("warning", number) for number in range(25)))
+    _, out, _ = command("run", write(), "--out", "out")
+    assert out.count("warning seam") == 20
+    assert "5 more in report.json" in out
+
+
+def test_quiet_errors_still_end_with_1(command, write, pretend):
+    pretend(finding("error"))
+    assert command("run", write(), "--out", "out", "--quiet") == (1, "", "")
+
+
+# ---- mistakes -------------------------------------------------------------------------------
+
+MISTAKES = [
+    ("thickness = 2.5", "thickness = -2.5", "profile.thickness"),
+    ("thickness = 2.5", "thickness = 50.0", "much wider than thick"),
+    ("length = 4000.0", "length = 400.0", "too long for the stock (at A1;"),
+    ('kind = "hypar"\nscale', 'kind = "sphere"\nradius', "Gaussian curvature"),
+    ("p = [-0.2, 0.2]", "p = [0.2, -0.2]", "smaller first"),
+    ("[net]", "[net", "not TOML"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "said"), MISTAKES, ids=[new for _, new, _ in MISTAKES])
+def test_a_mistake_ends_with_2_and_one_message_that_names_it(
+    command, write, tmp_path, old, new, said
+):
+    path = write(old, new)
+    code, out, err = command("run", path, "--out", tmp_path / "out")
+    assert (code, out) == (2, "")
+    assert err.startswith("gridshell: ")
+    assert err.count("\n") == 1
+    assert said in err
+    assert "Traceback" not in err
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_missing_project_ends_with_2(command, tmp_path):
+    code, _, err = command("run", tmp_path / "none.toml", "--out", tmp_path / "out")
+    assert code == 2
+    assert "none.toml" in err
+
+
+def test_an_output_that_is_a_file_ends_with_2(command, write, tmp_path):
+    (tmp_path / "out").write_text("mine")
+    code, _, err = command("run", write(), "--out", tmp_path / "out")
+    assert code == 2
+    assert "is a file" in err
+
+
+@pytest.mark.parametrize("words", [["run", "small.toml"], ["rum"], ["check"], ["run", "--outt"]])
+def test_wrong_usage_ends_with_2_on_stderr(command, words):
+    code, out, err = command(*words)
+    assert (code, out) == (2, "")
+    assert "gridshell" in err
+    assert "Traceback" not in err
+
+
+def test_a_mistake_in_the_program_itself_is_not_hidden(monkeypatch, write, tmp_path):
+    def broken(*args, **kwargs):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("fabrication.package.run", broken)
+    monkeypatch.setattr(sys, "argv", ["gridshell", "run", str(write()), "--out", "out"])
+    with pytest.raises(ZeroDivisionError):
+        cli.main()
+
+
+# ---- interrupted ----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def interrupted(command, write, tmp_path, monkeypatch):
+    """A run stopped by Ctrl-C while the fit is tried."""
+
+    def stop(*args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fabrication.package.fit", stop)
+    path = write()
+    return path, command("run", path, "--out", tmp_path / "out")
+
+
+def test_an_interrupted_run_leaves_nothing(interrupted, tmp_path):
+    path, (code, _, _) = interrupted
+    assert code == 130
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_interrupted_run_says_so(interrupted):
+    _, (_, out, err) = interrupted
+    assert out == ""
+    assert "Interrupted. Nothing was written." in err
+
+
+# ---- what is loaded -------------------------------------------------------------------------
+
+LOADED = """
+import sys
+from fabrication.cli import main
+try:
+    main()
+except SystemExit as stopped:
+    assert not stopped.code, stopped.code
+heavy = {"OCP", "cadquery", "build123d", "scipy"} & set(sys.modules)
+print("loaded:", sorted(heavy))
+"""
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["--version"]])
+def test_asking_for_help_loads_nothing_heavy(words):
+    assert fresh(LOADED, *words).stdout.splitlines()[-1] == "loaded: []"
+
+
+def test_checking_a_project_loads_nothing_heavy(write):
+    done = fresh(LOADED, "check", write())
+    assert done.stdout.splitlines()[-1] == "loaded: []", done.stderr

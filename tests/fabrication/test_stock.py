@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+
+import fabrication as fab
+import gridshell as gs
+from fabrication.stock import MATERIALS
+
+
+@pytest.mark.parametrize("key", ["modulus", "strength", "density"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+def test_a_material_needs_positive_numbers(key, value):
+    numbers = {"modulus": 210e3, "strength": 235.0, "density": 7850.0, key: value}
+    with pytest.raises(gs.SettingError, match="must be positive") as info:
+        fab.Material("steel", **numbers)
+    assert info.value.where == key
+
+
+@pytest.mark.parametrize("key", ["width", "thickness"])
+@pytest.mark.parametrize("value", [0.0, -2.5, np.nan, np.inf])
+def test_a_profile_needs_positive_sizes(key, value):
+    with pytest.raises(gs.SettingError, match="must be positive") as info:
+        fab.Profile(**{"width": 100.0, "thickness": 2.5, key: value}, material=fab.S235)
+    assert info.value.where == key
+
+
+def test_a_profile_thicker_than_a_third_of_its_width_is_no_strip():
+    with pytest.raises(gs.SettingError, match="must be a strip") as info:
+        fab.Profile(width=30.0, thickness=10.1, material=fab.S235)
+    assert (info.value.where, info.value.value) == ("thickness", "10.1 mm")
+    assert "10 mm" in info.value.limit
+
+
+def test_a_profile_of_exactly_a_third_is_one():
+    assert fab.Profile(width=30.0, thickness=10.0, material=fab.S235).thickness == 10.0
+
+
+@pytest.mark.parametrize("key", ["length", "width"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan])
+def test_a_sheet_needs_positive_sizes(key, value):
+    with pytest.raises(gs.SettingError, match="must be positive") as info:
+        fab.Sheet(**{"length": 3000.0, "width": 1500.0, key: value})
+    assert info.value.where == key
+
+
+@pytest.mark.parametrize("key", ["margin", "gap"])
+@pytest.mark.parametrize("value", [-0.1, np.nan, np.inf])
+def test_a_sheet_refuses_negative_distances(key, value):
+    with pytest.raises(gs.SettingError, match="cannot be negative") as info:
+        fab.Sheet(3000.0, 1500.0, **{key: value})
+    assert info.value.where == key
+
+
+@pytest.mark.parametrize("key", ["margin", "gap"])
+def test_a_sheet_without_margin_or_gap_is_allowed(key):
+    assert getattr(fab.Sheet(3000.0, 1500.0, **{key: 0.0}), key) == 0.0
+
+
+def test_margins_that_leave_nothing_of_a_sheet_are_refused():
+    with pytest.raises(gs.SettingError, match="leave nothing") as info:
+        fab.Sheet(3000.0, 100.0, margin=50.0)
+    assert (info.value.where, info.value.limit) == ("margin", "below 50 mm")
+
+
+def test_materials_are_found_by_the_name_they_carry():
+    assert {m.name: m for m in (fab.S235, fab.STAINLESS, fab.BIRCH_PLY)} == MATERIALS
