@@ -69,7 +69,7 @@ class ANet:
 
     angle: float | None = None
     keep_shape: bool = True
-    fairness: Weight = field(default=Weight(1e-3, 0.3))
+    fairness: Weight = field(default=Weight(1e-2, 0.1))
     closeness: Weight | None = None
     proximity: Weight = field(default=Weight(0.1, 0.3))
     stop: Stop = field(default=Stop(steps=30, tolerance=1e-9))
@@ -153,12 +153,10 @@ def a_net(
     keep_shape : False for a noisy start.
     steps, tolerance : when to stop; the tolerance is the largest residual at unit mean edge.
     """
-    fairness = Weight(1e-3, 0.3) if keep_shape else Weight(1e-2, 0.1)
     closeness = None if keep_shape else Weight(1e-2, 0.1)
     return ANet(
         angle=angle,
         keep_shape=keep_shape,
-        fairness=fairness,
         closeness=closeness,
         stop=Stop(steps=steps, tolerance=tolerance),
     )
