@@ -90,7 +90,7 @@ def closure(
         node_mm=node_mm,
         outline_mm=outlines,
         worst=names[int(np.argmax(distances))] if names else "",
-        volume_ppm=ppm,
+        volume_ppm=float(ppm),
         strips=len(parts),
         slots=len(distances),
     )

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -230,14 +229,19 @@ def _comb_quadrature(loop: Floats, knots: Floats) -> tuple[Floats, Floats, Float
     level = (loop[flat, 1] + following[flat, 1]) / 2.0
     inside = knots[(knots > loop[:, 0].min()) & (knots < loop[:, 0].max())]
     stops = np.unique(np.r_[loop[:, 0], inside])
+    middle = (stops[:-1] + stops[1:])[:, None] / 2.0
+    crossed = np.sort(np.where((low < middle) & (high > middle), level, np.inf), axis=1)
+    column, interval = np.nonzero(np.isfinite(crossed[:, 1::2]))
     nodes, weights = leggauss(4)
-    us, vs, ws = [], [], []
-    for a, b in pairwise(stops):
-        middle = (a + b) / 2.0
-        crossed = np.sort(level[(low < middle) & (high > middle)])
-        for c, d in zip(crossed[::2], crossed[1::2], strict=False):
-            u, v = np.meshgrid((a + b + (b - a) * nodes) / 2, (c + d + (d - c) * nodes) / 2)
-            us.append(u.ravel())
-            vs.append(v.ravel())
-            ws.append((np.outer(weights, weights) * (b - a) * (d - c) / 4.0).ravel())
-    return np.concatenate(us), np.concatenate(vs), np.concatenate(ws)
+    half_u = np.diff(stops)[column] / 2.0
+    bottom, top = crossed[column, 2 * interval], crossed[column, 2 * interval + 1]
+    half_v = (top - bottom) / 2.0
+    u = middle[column] + half_u[:, None] * nodes
+    v = (bottom + half_v)[:, None] + half_v[:, None] * nodes
+    weight = (half_u * half_v)[:, None, None] * np.outer(weights, weights)
+    shape = weight.shape
+    return (
+        np.broadcast_to(u[:, :, None], shape).ravel(),
+        np.broadcast_to(v[:, None, :], shape).ravel(),
+        weight.ravel(),
+    )
