@@ -9,17 +9,17 @@ which makes the solid watertight by construction.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
 
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import KernelError
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
+from fabrication.sides import Side, strip_sides
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, unit
 
@@ -62,9 +62,6 @@ _KERNEL_ERRORS = tuple(
 
 _TOLERANCE = 1e-6
 _VOLUME_ACCURACY = 1e-7
-_SAMPLES_PER_BAY = (2, 4, 8, 16, 32, 64)
-_ACCURACY = 1e-3
-"""Of the corner curves, mm: more samples are taken until they reach it."""
 
 
 def solids(structure: Structure, parts: Sequence[FlatPart]) -> list[build123d.Solid]:
@@ -93,7 +90,7 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
         When the kernel does not find it valid.
     """
     try:
-        solid = _Builder(_sides(lamella, part), part.thickness).solid(part.outline)
+        solid = _Builder(strip_sides(lamella, part), part.thickness).solid(part.outline)
     except _KERNEL_ERRORS as error:
         raise KernelError(
             "The kernel cannot make a lamella's solid", where=lamella.mark, value=str(error)
@@ -114,68 +111,6 @@ def volume(shape: Any) -> float:
     return float(properties.Mass())
 
 
-# ---- the two sides of a strip as splines -----------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class _Side:
-    """A side of the strip: lower and upper corner curve with the same knots, v = 0 .. width."""
-
-    knots: Floats
-    lower: Floats
-    upper: Floats
-    width: float
-
-    def points(self, u: Floats, v: Floats) -> Floats:
-        """Positions (n, 3) at parameters *u*, *v*."""
-        share = (np.asarray(v) / self.width)[:, None]
-        lower = BSpline(self.knots, self.lower, 3)(u)
-        return np.asarray((1.0 - share) * lower + share * BSpline(self.knots, self.upper, 3)(u))
-
-
-def _sides(lamella: Lamella, part: FlatPart) -> tuple[_Side, _Side]:
-    """The sides at +t/2 and -t/2 across; u is x on the flat strip.
-
-    Samples are doubled until the splines meet the strip's own map half-way between them.
-    """
-    half_t, half_h = part.thickness / 2.0, part.width / 2.0
-    corners = [(y, z) for y in (half_t, -half_t) for z in (-half_h, half_h)]
-
-    def corner_curves(x: Floats) -> Floats:
-        f = lamella.frames(x + lamella.start)
-        return np.concatenate([f.points + y * f.b + z * f.n for y, z in corners], axis=1)
-
-    for per_bay in _SAMPLES_PER_BAY:
-        u = _sample_stations(lamella, per_bay) - lamella.start
-        spline = _clamped_spline(u, corner_curves)
-        between = (u[1:] + u[:-1]) / 2.0
-        if np.abs(spline(between) - corner_curves(between)).max() <= _ACCURACY:
-            break
-    poles = spline.c.reshape(-1, 4, 3)
-    near, far = (_Side(spline.t, poles[:, 2 * i], poles[:, 2 * i + 1], part.width) for i in (0, 1))
-    return near, far
-
-
-def _clamped_spline(u: Floats, curves: Callable[[Floats], Floats]) -> BSpline:
-    """The cubic spline through *curves* at *u*, with their slopes at both ends."""
-    step = 1e-3 * float(u[-1] - u[0]) / len(u)
-    slopes = [
-        (curves(np.array([x + step])) - curves(np.array([x - step])))[0] / (2.0 * step)
-        for x in (u[0], u[-1])
-    ]
-    boundary = ([(1, slopes[0])], [(1, slopes[1])])
-    return make_interp_spline(u, curves(u), k=3, bc_type=boundary)
-
-
-def _sample_stations(lamella: Lamella, per_bay: int) -> Floats:
-    """Cut ends, nodes, and points between them in every bay."""
-    inside = lamella.stations[(lamella.stations > lamella.start) & (lamella.stations < lamella.end)]
-    stops = np.unique(np.r_[lamella.start, inside, lamella.end])
-    share = np.arange(per_bay) / per_bay
-    between = (stops[:-1, None] + np.diff(stops)[:, None] * share).ravel()
-    return np.asarray(np.r_[between, stops[-1]])
-
-
 # ---- boundary representation ------------------------------------------------------------------
 
 
@@ -193,7 +128,7 @@ class _Line:
 class _Builder:
     """Makes the shared vertices, edges and faces of one strip."""
 
-    def __init__(self, sides: tuple[_Side, _Side], thickness: float) -> None:
+    def __init__(self, sides: tuple[Side, Side], thickness: float) -> None:
         self.sides, self.thickness = sides, thickness
         self.tool = BRep_Builder()
         self.tolerance = _TOLERANCE
@@ -387,7 +322,7 @@ def _wall_tolerance(corners: Sequence[Floats], lines: Sequence[_Line], thickness
     return max(_TOLERANCE, *(2.0 * float(np.max(x)) for x in (offset, across, *up)))
 
 
-def _side_surface(side: _Side) -> Geom_BSplineSurface:
+def _side_surface(side: Side) -> Geom_BSplineSurface:
     points = TColgp_Array2OfPnt(1, len(side.lower), 1, 2)
     for column, poles in enumerate((side.lower, side.upper), start=1):
         for row, pole in enumerate(poles.tolist(), start=1):
