@@ -25,7 +25,6 @@ app = typer.Typer(
 )
 
 _STAGES = 11
-_SHOWN_FINDINGS = 20
 
 ProjectFile = Annotated[Path, typer.Argument(metavar="PROJECT.toml", help="The project file.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
@@ -132,15 +131,15 @@ def _summary(report: dict[str, Any], out: Path) -> None:
 
 
 def _print_findings(console: Console, findings: list[dict[str, Any]]) -> None:
+    """One line for each kind of finding: the first of its kind, and how many more there are."""
     colours = {"error": "red", "warning": "yellow", "info": "cyan"}
-    for finding in findings[:_SHOWN_FINDINGS]:
-        colour = colours[finding["severity"]]
-        console.print(
-            f"  [{colour}]{finding['severity']}[/{colour}] {finding['code']}: "
-            f"{_plain(finding['message'])}"
-        )
-    if len(findings) > _SHOWN_FINDINGS:
-        console.print(f"  ... and {len(findings) - _SHOWN_FINDINGS} more in report.json")
+    kinds: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for finding in findings:
+        kinds.setdefault((finding["severity"], finding["code"]), []).append(finding)
+    for (severity, code), same in kinds.items():
+        line = f"  [{colours[severity]}]{severity}[/] {code}: {_plain(same[0]['message'])}"
+        more = f" And {len(same) - 1} more like this, see report.html." if len(same) > 1 else ""
+        console.print(line + more)
 
 
 def _plain(text: str) -> str:

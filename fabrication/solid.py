@@ -50,7 +50,7 @@ except ImportError as error:  # pragma: no cover - depends on the machine
     raise KernelError(
         "The CAD kernel cannot be loaded",
         value=str(error),
-        advice="install the project again; on a bare Linux also the system package libgl1",
+        advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
     ) from error
 
 _KERNEL_ERRORS = tuple(
