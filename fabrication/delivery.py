@@ -59,31 +59,38 @@ def move_in(draft: Path, out: Path, *, stale: Sequence[str]) -> None:
     Raises
     ------
     OutputError
-        When a file cannot be moved; *out* is then as it was.
+        When a file cannot be moved. *out* is then as it was, as it is after an interrupt.
     """
     fresh = [path.relative_to(draft) for path in sorted(draft.rglob("*")) if path.is_file()]
     old = [path.relative_to(out) for pattern in stale for path in sorted(out.glob(pattern))]
     aside = Path(tempfile.mkdtemp(prefix=".old-", dir=draft))
     done: list[tuple[Path, Path]] = []
-    existed = out.exists()
+    wanted = [out, *sorted({(out / name).parent for name in fresh})]
+    made = [folder for folder in wanted if not folder.exists()]
     try:
         for name in dict.fromkeys([*old, *fresh]):
             if (out / name).exists():
                 _move(out / name, aside / name, done)
         for name in fresh:
             _move(draft / name, out / name, done)
-    except OSError as error:
+    except BaseException as error:
         for source, target in reversed(done):
-            target.replace(source)
-        if not existed:
-            shutil.rmtree(out, ignore_errors=True)
-        raise _cannot_write(out, error) from None
+            if target.exists():
+                target.replace(source)
+        _remove(made[::-1])
+        if isinstance(error, OSError):
+            raise _cannot_write(out, error) from None
+        raise
 
 
 def _move(source: Path, target: Path, done: list[tuple[Path, Path]]) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
-    source.replace(target)
     done.append((source, target))
+    try:
+        source.replace(target)
+    except OSError:
+        done.pop()
+        raise
 
 
 def _remove(folders: Sequence[Path]) -> None:

@@ -20,7 +20,6 @@ from gridshell.arrays import Floats, Indices
 from gridshell.errors import SolveError
 from gridshell.solve.constraint import Evaluation, Pattern
 
-
 _ONE_THREAD_BELOW = 20_000
 """Unknowns below which a second thread costs more than it gives."""
 

@@ -11,7 +11,7 @@ from fabrication.cut import Edge, Slot, outline
 from fabrication.errors import StockError
 from fabrication.unroll import Development
 
-SHEET = fab.Sheet(6000.0, 700.0, margin=12.0, gap=8.0)
+SHEET = fab.Sheet(6000.0, 767.0, margin=12.0, gap=8.0)
 
 
 def part(number, length, width=100.0):
@@ -46,7 +46,7 @@ def test_every_part_is_placed_exactly_once(sizes):
 
 @given(lengths)
 def test_parts_stay_inside_the_margins(sizes):
-    room = box(12.0, 12.0, 6000.0 - 12.0, 700.0 - 12.0).buffer(1e-6)
+    room = box(12.0, 12.0, 6000.0 - 12.0, 767.0 - 12.0).buffer(1e-6)
     for sheet in fab.nest([part(i, length) for i, length in enumerate(sizes)], SHEET):
         assert all(room.contains(shape) for shape in placed(sheet))
 
@@ -110,4 +110,4 @@ def test_the_same_parts_are_placed_the_same_way_in_any_order():
 
 def test_the_used_share_of_a_sheet_is_part_area_over_sheet_area():
     (sheet,) = fab.nest([part(1, 3000.0)], SHEET)
-    assert sheet.used == pytest.approx((3000.0 * 100.0 - 3.0 * 50.0) / (6000.0 * 700.0))
+    assert sheet.used == pytest.approx((3000.0 * 100.0 - 3.0 * 50.0) / (6000.0 * 767.0))

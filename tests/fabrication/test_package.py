@@ -1,6 +1,5 @@
 import csv
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -219,6 +218,58 @@ def test_files_that_do_not_close_are_findings_of_severity_error():
     assert {f.severity for f in found} == {fab.Severity.ERROR}
 
 
+class AskedError(Exception):
+    """Stops a run where the net would be optimised, with what is asked of it."""
+
+
+@pytest.fixture
+def asked(monkeypatch, tmp_path):
+    """What the [net] of a project asks of the optimisation: recipe, anchor and reference."""
+
+    def stop(control, recipe, *, anchor, reference=None, progress=None):
+        raise AskedError(recipe, anchor, reference)
+
+    monkeypatch.setattr(gs, "optimize", stop)
+
+    def build(**net):
+        with pytest.raises(AskedError) as info:
+            fab.run(project(net={"anchor": "free", **net}), tmp_path / "out")
+        return info.value.args
+
+    return build
+
+
+@pytest.mark.parametrize(
+    ("name", "anchor"),
+    [
+        ("free", gs.Free()),
+        ("boundary-pinned", gs.BoundaryPinned()),
+        ("boundary-glide", gs.BoundaryGlide()),
+    ],
+)
+def test_the_anchor_is_the_one_that_is_named(asked, name, anchor):
+    assert asked(anchor=name)[1] == anchor
+
+
+def test_the_recipe_has_the_project_s_angle_steps_and_tolerance(asked):
+    recipe, _, _ = asked(angle=60.0, steps=12, tolerance=1e-7)
+    assert recipe == gs.a_net(angle=np.pi / 3.0, steps=12, tolerance=1e-7)
+
+
+@pytest.mark.parametrize(("keep", "reference"), [(True, gs.Hypar(6000.0)), (False, None)])
+def test_the_surface_is_kept_to_unless_it_must_give_way(asked, keep, reference):
+    assert asked(keep_to_surface=keep)[2] == reference
+
+
+def test_the_angle_that_is_asked_for_is_built(tmp_path):
+    net = {"anchor": "free", "angle": 60.0, "keep_to_surface": False}
+    enneper = {"kind": "enneper", "scale": 4000.0}
+    report = fab.run(project(net=net, surface=enneper), tmp_path)
+    assert report["net"]["angle_error_deg"]["max"] < 1e-4
+    assert report["net"]["node_angle_deg"] == pytest.approx({"min": 60.0, "max": 60.0}, abs=1e-4)
+    assert report["net"]["surface_distance_mm"] is None
+
+
 # ---- nets from files ------------------------------------------------------------------------
 
 
@@ -417,43 +468,9 @@ def test_an_output_below_a_file_is_refused(tmp_path):
     assert content(tmp_path) == {"jobs": b"mine"}
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_any_work(tmp_path, monkeypatch):
-    def refuse(*args, **kwargs):
-        raise PermissionError(13, "Permission denied")
-
+def test_an_output_that_is_refused_costs_no_work(tmp_path):
+    (tmp_path / "out").write_text("mine")
     stages = []
-    monkeypatch.setattr("fabrication.package.tempfile.mkdtemp", refuse)
-    with pytest.raises(OutputError, match="Permission denied"):
+    with pytest.raises(OutputError):
         fab.run(project(), tmp_path / "out", announce=stages.append)
     assert stages == []
-
-
-@pytest.fixture
-def stuck(monkeypatch):
-    """Let the n-th file or folder that is renamed be refused."""
-
-    def build(n):
-        replace, calls = Path.replace, []
-
-        def counted(self, target):
-            calls.append(target)
-            if len(calls) == n:
-                raise PermissionError(13, "Permission denied")
-            return replace(self, target)
-
-        monkeypatch.setattr(Path, "replace", counted)
-
-    return build
-
-
-@pytest.mark.parametrize("n", [1, 3])
-def test_a_package_that_cannot_be_moved_in_leaves_the_folder_as_it_was(tmp_path, stuck, n):
-    out = tmp_path / "out"
-    (out / "sheets").mkdir(parents=True)
-    for name in ("net.json", "report.json", "parts.csv", "sheets/sheet-01.dxf", "order.txt"):
-        (out / name).write_text("old")
-    before = content(tmp_path)
-    stuck(n)
-    with pytest.raises(OutputError, match="Permission denied"):
-        fab.run(project(patch={**SMALL["patch"], "lamellas": (2, 2)}), out)
-    assert content(tmp_path) == before

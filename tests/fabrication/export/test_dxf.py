@@ -283,6 +283,28 @@ def test_an_outline_without_a_mark_is_refused(sheets, tmp_path):
         fab.read_dxf(path)
 
 
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda outline: outline.set_xdata("GRIDSHELL", [(1040, 1.0)]),
+        lambda outline: outline.set_points([(0.0, 0.0), (10.0, 0.0)]),
+    ],
+    ids=["a number for a mark", "two corners"],
+)
+def test_an_incomplete_outline_is_refused(sheets, tmp_path, spoil):
+    path = changed(sheets, tmp_path, lambda document: spoil(on(document, "CUT")[1]))
+    with pytest.raises(gs.FileError, match="outline is incomplete"):
+        fab.read_dxf(path)
+
+
+def test_a_sheet_with_a_garbled_number_is_refused(sheets, tmp_path):
+    text = sheets("catenoid")[1][0].read_text()
+    path = tmp_path / "sheet-01.dxf"
+    path.write_text(text.replace("12000.0", "@2000.0"))
+    with pytest.raises(gs.FileError, match="cannot be read"):
+        fab.read_dxf(path)
+
+
 def test_a_stray_line_on_the_cut_layer_is_refused(sheets, tmp_path):
     def draw(document):
         document.modelspace().add_line((0, 0), (10, 0), dxfattribs={"layer": "CUT"})
