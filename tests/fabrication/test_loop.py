@@ -4,6 +4,7 @@ from dataclasses import replace
 import ezdxf
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 import fabrication as fab
 import gridshell as gs
@@ -139,6 +140,29 @@ def test_a_solid_moved_by_a_tenth_is_seen(four, tmp_path):
     moved = [body.moved(build123d.Location((0.1, 0.0, 0.0))) for body in files.solids]
     result = closed(design, files, step=as_step(moved, design, tmp_path))
     assert result.node_mm == pytest.approx(0.1, abs=0.01)
+
+
+def test_a_strip_that_leans_is_seen_at_its_edges(four, tmp_path):
+    """Turned about its axis: the axis stays, the edges move by a fifth of a millimetre."""
+    design, files = four
+    first, *rest = design.structure.lamellas
+    f = first.frames(first.stations)
+    leaning = CubicSpline(first.stations, f.n + 0.2 / 50.0 * f.b)
+    structure = replace(design.structure, lamellas=(replace(first, normals=leaning), *rest))
+    step = as_step(fab.solids(structure, design.parts), design, tmp_path)
+    result = closed(design, files, step=step)
+    assert result.node_mm == pytest.approx(0.2, abs=0.01)
+    assert result.worst.startswith(first.mark)
+
+
+def test_a_tooth_in_an_edge_is_seen(four, tmp_path):
+    design, files = four
+    first, *rest = design.parts
+    corner = first.outline[0]
+    tooth = corner + np.array([[20.0, 0.0], [20.5, 3.0], [21.0, 0.0]])
+    toothed = np.vstack([first.outline[:1], tooth, first.outline[1:]])
+    sheets = on_sheets([replace(first, outline=toothed), *rest], tmp_path)
+    assert closed(design, files, sheets=sheets).outline_mm > 0.5
 
 
 def test_a_node_of_another_net_is_seen(four):

@@ -1,12 +1,14 @@
 import csv
 import json
 
+import ezdxf
 import numpy as np
 import pytest
 
 import fabrication as fab
 import gridshell as gs
 from fabrication import package
+from fabrication.cut import area
 from fabrication.errors import OutputError, StockError
 from gridshell.mesh import grid_quads
 
@@ -176,16 +178,50 @@ def test_sheets_and_assembly_hold_every_lamella(done):
 # ---- other projects -------------------------------------------------------------------------
 
 
-def test_a_material_and_an_overhang_of_one_s_own_are_used(tmp_path):
+@pytest.fixture(scope="module")
+def special(tmp_path_factory):
+    """A folder made with every setting other than the usual one."""
+    out = tmp_path_factory.mktemp("special") / "out"
     own = {"name": "corten", "modulus": 210e3, "strength": 355.0, "density": 1000.0}
-    profile = {"width": 60.0, "thickness": 2.0, "material": own, "overhang": 25.0}
-    patch = {**SMALL["patch"], "lamellas": (2, 2)}
-    fab.run(project(profile=profile, patch=patch), tmp_path)
-    row = next(csv.DictReader((tmp_path / "parts.csv").read_text().splitlines()))
+    fab.run(
+        project(
+            patch={**SMALL["patch"], "lamellas": (2, 2)},
+            profile={"width": 60.0, "thickness": 2.0, "material": own, "overhang": 25.0},
+            joint={"kind": "slot", "clearance": 1.0, "depth_clearance": 3.0},
+            sheet={"length": 3500.0, "width": 500.0, "margin": 40.0, "gap": 20.0},
+        ),
+        out,
+    )
+    (sheet,) = (out / "sheets").iterdir()
+    row = next(csv.DictReader((out / "parts.csv").read_text().splitlines()))
+    return out, row, fab.read_dxf(sheet)[0].outline
+
+
+def test_a_profile_of_one_s_own_is_used(special):
+    _, row, outline = special
     assert (row["material"], row["width_mm"], row["thickness_mm"]) == ("corten", "60", "2")
-    net = gs.diagonal_meshes(gs.read_net(tmp_path / "net.json"))[0]
+    assert float(row["mass_kg"]) == pytest.approx(area(outline) * 2.0 * 1000.0e-9, abs=1e-3)
+
+
+def test_an_overhang_of_one_s_own_is_used(special):
+    out, row, _ = special
+    net = gs.diagonal_meshes(gs.read_net(out / "net.json"))[0]
     axis = np.linalg.norm(net.vertices[1] - net.vertices[0])
     assert float(row["length_mm"]) == pytest.approx(axis + 50.0, abs=1.0)
+
+
+def test_clearances_of_one_s_own_are_used(special):
+    _, row, outline = special
+    assert float(row["slot_width_min_mm"]) == pytest.approx(3.0, abs=0.1)
+    floors = np.unique(outline[(outline[:, 1] > 0.0) & (outline[:, 1] < 60.0), 1])
+    assert floors == pytest.approx([27.0])
+
+
+def test_a_sheet_of_one_s_own_is_used(special):
+    document = ezdxf.readfile(next((special[0] / "sheets").iterdir()))
+    parts = [np.array(e.get_points("xy")) for e in document.query('LWPOLYLINE[layer=="CUT"]')]
+    assert [part[0, 1] for part in parts] == pytest.approx([40.0 + 80.0 * row for row in range(4)])
+    assert {part[0, 0] for part in parts} == {40.0}
 
 
 def test_a_bad_design_is_still_built_and_its_findings_are_in_the_report(tmp_path):

@@ -1,5 +1,6 @@
 import cadquery
 import pytest
+from OCP.Message import Message, Message_PrinterOStream
 
 import fabrication as fab
 from fabrication.colours import FAMILY_COLOURS
@@ -73,6 +74,14 @@ def test_a_folder_that_is_not_there_is_an_error(pair, files, tmp_path):
     with pytest.raises(OutputError, match="STEP file cannot be written") as info:
         fab.write_step(whole, tmp_path / "missing" / "structure.step")
     assert "structure.step" in info.value.where
+
+
+def test_the_kernel_s_own_messages_are_kept_off_the_terminal(pair, files, tmp_path):
+    messenger = Message.DefaultMessenger_s()
+    messenger.AddPrinter(Message_PrinterOStream())
+    whole = fab.assembly(files(pair).solids, pair.structure, name="shell")
+    fab.write_step(whole, tmp_path / "structure.step")
+    assert messenger.Printers().Size() == 0
 
 
 @pytest.mark.parametrize("name", ["Dächle", "a/b", 'it\'s "quoted"; {ok}', "1"])

@@ -1,11 +1,16 @@
 import re
+from ctypes import CDLL
+from dataclasses import replace
 
 import cadquery
 import numpy as np
 import pytest
+from OCP.Message import Message, Message_PrinterOStream
+from scipy.interpolate import BSpline
 
 import fabrication as fab
 import gridshell as gs
+from fabrication.export.step_reader import RuledSide
 from fabrication.solid import volume
 
 pytestmark = pytest.mark.xdist_group("kernel")
@@ -74,6 +79,26 @@ def test_slopes_are_the_derivatives_of_points(case):
     np.testing.assert_allclose(by_v, across, atol=1e-6)
 
 
+def stretched(side, factor):
+    """The same face with *factor* times its parameters u."""
+    edges = (BSpline(factor * edge.t, edge.c, 3) for edge in (side.lower, side.upper))
+    return RuledSide(*edges, side.width)
+
+
+def test_x_is_measured_along_the_strip_whatever_the_parameters_are(case):
+    part = case[2][0]
+    other = replace(
+        part,
+        near=stretched(part.near, 2.5),
+        far=stretched(part.far, 2.5),
+        loop=part.loop * np.array([2.5, 1.0]),
+    )
+    x, y = np.linspace(0.0, 900.0, 9), np.linspace(0.0, 100.0, 9)
+    np.testing.assert_allclose(other.place(x, y), part.place(x, y), atol=1e-6)
+    np.testing.assert_allclose(other.unrolled_loop(), part.unrolled_loop(), atol=1e-6)
+    assert other.volume() == pytest.approx(part.volume(), rel=1e-9)
+
+
 # ---- files that are not ours ----------------------------------------------------------------
 
 
@@ -86,6 +111,16 @@ def test_a_missing_file_is_named(tmp_path):
 def test_a_folder_is_no_file(tmp_path):
     with pytest.raises(gs.FileError, match="missing"):
         fab.read_step(tmp_path)
+
+
+def test_a_file_that_is_no_step_is_refused_without_the_kernel_s_own_words(tmp_path, capfd):
+    messenger = Message.DefaultMessenger_s()
+    messenger.AddPrinter(Message_PrinterOStream())
+    (tmp_path / "structure.step").write_text("hello\n")
+    with pytest.raises(gs.FileError):
+        fab.read_step(tmp_path / "structure.step")
+    CDLL(None).fflush(None)
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("content", ["", "hello\n", "ISO-10303-21;\nHEADER;\n"])
