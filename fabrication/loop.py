@@ -67,8 +67,26 @@ def closure(
     FileError
         When a file cannot be read or a part is missing from it.
     """
-    flat = {part.mark: part for path in sheets for part in read_dxf(path)}
-    bent = {part.mark: part for part in read_step(step)}
+    flat = [part for path in sheets for part in read_dxf(path)]
+    return compare(structure, parts, net, flat, read_step(step))
+
+
+def compare(
+    structure: Structure,
+    parts: Sequence[FlatPart],
+    net: DiagonalMesh,
+    drawn_parts: Iterable[DxfPart],
+    bent_parts: Iterable[StepPart],
+) -> Closure:
+    """The same for parts that were read from the files already.
+
+    Raises
+    ------
+    FileError
+        When a part is missing, or has another number of slots than its lamella has nodes.
+    """
+    flat = {part.mark: part for part in drawn_parts}
+    bent = {part.mark: part for part in bent_parts}
     missing = [p.mark for p in parts if p.mark not in flat or p.mark not in bent]
     if missing:
         raise FileError("A lamella is missing from the files", where=missing[0])

@@ -22,6 +22,7 @@ from fabrication.delivery import draft_folder, move_in
 from fabrication.finding import Finding, Severity
 from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
+from fabrication.kernel_job import kernel_job
 from fabrication.nesting import NestedSheet, nest
 from fabrication.parts import FlatPart, flat_parts
 from fabrication.project import AsymptoticPatchSection, MeshSection, Project
@@ -198,19 +199,28 @@ def _write(
     draft: Path,
     clock: _Clock,
 ) -> Report:
-    from fabrication.export.dxf import write_dxf
+    from fabrication.export.dxf import read_dxf, write_dxf
     from fabrication.export.schedule import mass, write_schedule
+    from fabrication.loop import compare
 
     design, net_report, findings = designed
-    with clock.stage("fit"):
-        fitted = fit(design.structure, design.parts)
-    with clock.stage("sheets"):
-        gs.write_net(draft / "net.json", design.control)
-        gs.write_obj(draft / "net.obj", design.control.mesh, unit=gs.Unit.MM)
-        sheet_files = write_dxf(design.sheets, draft / "sheets")
-        material = design.structure.profile.material
-        write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
-    closed = _write_solids(project, design, sheet_files, draft, clock)
+    step = draft / "structure.step"
+    with kernel_job(design.structure, design.parts, name=project.name, step=step) as finish:
+        with clock.stage("fit"):
+            fitted = fit(design.structure, design.parts)
+        with clock.stage("sheets"):
+            gs.write_net(draft / "net.json", design.control)
+            gs.write_obj(draft / "net.obj", design.control.mesh, unit=gs.Unit.MM)
+            sheet_files = write_dxf(design.sheets, draft / "sheets")
+            material = design.structure.profile.material
+            write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
+            drawn = [part for path in sheet_files for part in read_dxf(path)]
+        with clock.stage("solids"):
+            solid = finish()
+    with clock.stage("closure"):
+        skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
+        net = skins[0 if project.net.skin == "D1" else 1]
+        closed = asdict(compare(design.structure, design.parts, net, drawn, solid.parts))
     findings += _loop_findings(closed, fitted)
     report: Report = {
         "name": project.name,
@@ -233,28 +243,10 @@ def _write(
         },
         "findings": [{**asdict(f), "severity": f.severity.value} for f in findings],
         "timing": clock.seconds,
+        "kernel_timing": solid.seconds,
     }
     _write_reports(project, design, report, draft, clock)
     return report
-
-
-def _write_solids(
-    project: Project, design: _Design, sheet_files: list[Path], draft: Path, clock: _Clock
-) -> Report:
-    with clock.stage("CAD kernel"):
-        from fabrication.export.step import assembly, write_step
-        from fabrication.loop import closure
-        from fabrication.solid import solids
-    with clock.stage("solids"):
-        bodies = solids(design.structure, design.parts)
-    with clock.stage("STEP"):
-        whole = assembly(bodies, design.structure, name=project.name)
-        write_step(whole, draft / "structure.step")
-    with clock.stage("closure"):
-        skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
-        net = skins[0 if project.net.skin == "D1" else 1]
-        step = draft / "structure.step"
-        return asdict(closure(design.structure, design.parts, net, sheet_files, step))
 
 
 def _write_reports(

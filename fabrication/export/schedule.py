@@ -6,6 +6,7 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
+from fabrication.errors import OutputError
 from fabrication.nesting import NestedSheet
 from fabrication.parts import FlatPart
 from fabrication.stock import Material
@@ -36,25 +37,36 @@ def write_schedule(
     sheets: Sequence[NestedSheet],
     material: Material,
 ) -> None:
-    """Write the cut list of *parts*, in their order; it opens in any spreadsheet."""
+    """Write the cut list of *parts*, in their order; it opens in any spreadsheet.
+
+    Raises
+    ------
+    OutputError
+        When the file cannot be written.
+    """
     sheet_of = {p.part.mark: sheet.number for sheet in sheets for p in sheet.placements}
-    with Path(path).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        for part in parts:
-            widths = [slot.width for slot in part.slots]
-            writer.writerow(
-                [
-                    part.mark,
-                    1,
-                    f"{part.length:.2f}",
-                    f"{part.width:g}",
-                    f"{part.thickness:g}",
-                    material.name,
-                    len(part.slots),
-                    f"{min(widths):.2f}" if widths else "",
-                    f"{max(widths):.2f}" if widths else "",
-                    f"{mass(part, material):.3f}",
-                    sheet_of[part.mark],
-                ]
-            )
+    rows = [_row(part, material, sheet_of[part.mark]) for part in parts]
+    try:
+        with Path(path).open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([COLUMNS, *rows])
+    except OSError as error:
+        raise OutputError(
+            "The cut list cannot be written", where=str(path), value=error.strerror or ""
+        ) from None
+
+
+def _row(part: FlatPart, material: Material, sheet: int) -> list[str | int]:
+    widths = [slot.width for slot in part.slots]
+    return [
+        part.mark,
+        1,
+        f"{part.length:.2f}",
+        f"{part.width:g}",
+        f"{part.thickness:g}",
+        material.name,
+        len(part.slots),
+        f"{min(widths):.2f}" if widths else "",
+        f"{max(widths):.2f}" if widths else "",
+        f"{mass(part, material):.3f}",
+        sheet,
+    ]

@@ -15,13 +15,8 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from OCP.IFSelect import IFSelect_RetDone
-from OCP.STEPControl import STEPControl_Reader
-from OCP.StepGeom import StepGeom_BSplineSurfaceWithKnots
-from OCP.StepShape import StepShape_ManifoldSolidBrep, StepShape_ShapeDefinitionRepresentation
 from scipy.interpolate import BSpline, CubicHermiteSpline
 
-from fabrication.export.step import quiet
 from gridshell import FileError
 from gridshell.arrays import Floats
 
@@ -138,6 +133,11 @@ def read_step(path: Path | str) -> tuple[StepPart, ...]:
     FileError
         When the file is missing, cannot be read, or a solid has no two large ruled faces.
     """
+    from OCP.IFSelect import IFSelect_RetDone
+    from OCP.STEPControl import STEPControl_Reader
+
+    from fabrication.export.step import quiet
+
     quiet()
     if not Path(path).is_file():
         raise FileError("The STEP file is missing", where=str(path))
@@ -148,6 +148,8 @@ def read_step(path: Path | str) -> tuple[StepPart, ...]:
 
 
 def _named_solids(model: Any) -> Iterator[tuple[str, Any]]:
+    from OCP.StepShape import StepShape_ManifoldSolidBrep, StepShape_ShapeDefinitionRepresentation
+
     for i in range(1, model.NbEntities() + 1):
         entity = model.Entity(i)
         if not isinstance(entity, StepShape_ShapeDefinitionRepresentation):
@@ -162,6 +164,8 @@ def _named_solids(model: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _part(path: Path | str, name: str, brep: Any) -> StepPart:
+    from OCP.StepGeom import StepGeom_BSplineSurfaceWithKnots
+
     shell = brep.Outer()
     candidates = []
     for face in (shell.CfsFacesValue(i) for i in range(1, shell.NbCfsFaces() + 1)):

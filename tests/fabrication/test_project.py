@@ -149,7 +149,7 @@ def test_an_empty_file_names_a_key_to_begin_with(refused):
 # ---- keys -----------------------------------------------------------------------------------
 
 WRONG = {
-    "profile.thickness": [-2.0, 0.0, float("nan"), float("inf"), "two", [2.0]],
+    "profile.thickness": [-2.0, 0.0, float("nan"), float("inf"), "two", "2", [2.0]],
     "profile.width": [-1.0, {}],
     "profile.overhang": [0.0, -5.0],
     "net.angle": [0.0, 180.0, -5.0, 200.0, float("nan"), "right"],

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -41,6 +42,21 @@ def test_neighbours_have_consecutive_numbers(name, family, request):
     design = request.getfixturevalue(name)
     across = design.net.edges[design.net.family != family]
     a, b = owners(design, family)[across.T]
+    assert (np.abs(a - b) == 1).all()
+
+
+@pytest.mark.parametrize("family", [1, 2])
+def test_numbers_begin_at_a_side_wherever_the_first_vertex_lies(catenoid, profile, family):
+    """The vertex in the middle of the net becomes the first one."""
+    control, middle = catenoid.control, catenoid.net.control_vertices[12]
+    order = np.r_[middle, np.delete(np.arange(len(control.vertices)), middle)]
+    mesh = gs.QuadMesh(control.vertices[order], np.argsort(order)[control.quads])
+    net = gs.diagonal_meshes(gs.ControlMesh(mesh, control.colour[order]))[0]
+    structure = fab.structure(net, profile)
+    centre = next(node for node in structure.nodes if node.name == "N1")
+    assert {structure.lamellas[c.lamella].mark for c in centre.crossings} == {"A3", "B3"}
+    owner = owners(replace(catenoid, net=net, structure=structure), family)
+    a, b = owner[net.edges[net.family != family].T]
     assert (np.abs(a - b) == 1).all()
 
 

@@ -3,6 +3,7 @@ import csv
 import pytest
 
 import fabrication as fab
+from fabrication.errors import OutputError
 from fabrication.export.schedule import COLUMNS, mass
 
 
@@ -64,3 +65,11 @@ def test_a_part_without_slots_leaves_their_widths_empty(strip, tmp_path):
     )
     (row,) = csv.DictReader((tmp_path / "parts.csv").read_text().splitlines())
     assert (row["slots"], row["slot_width_min_mm"], row["slot_width_max_mm"]) == ("0", "", "")
+
+
+def test_a_folder_that_is_not_there_is_an_error(strip, tmp_path):
+    parts = [strip("A1", 1000.0)]
+    nested = fab.nest(parts, fab.Sheet(3000.0, 1000.0))
+    with pytest.raises(OutputError) as info:
+        fab.write_schedule(tmp_path / "missing" / "parts.csv", parts, nested, fab.S235)
+    assert "parts.csv" in info.value.where
