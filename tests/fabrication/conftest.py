@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import pickle
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from hypothesis import settings
 
 import fabrication as fab
 import gridshell as gs
+from fabrication import kernel_job
 from fabrication.cut import Slot, outline
 from fabrication.unroll import Development
 from gridshell.mesh import grid_quads
@@ -196,3 +199,36 @@ def files(tmp_path_factory: pytest.TempPathFactory, sheet: fab.Sheet) -> Callabl
         return written[id(design)]
 
     return write
+
+
+# ---- the CAD kernel -------------------------------------------------------------------------
+
+
+class KernelProcess:
+    """Stands in for the kernel's own process and does its work in this one."""
+
+    returncode = 0
+
+    def __init__(self, command: Sequence[str], **_: Any) -> None:
+        self.order, self.answer = map(Path, command[-2:])
+
+    def communicate(self) -> tuple[bytes, bytes]:
+        self.answer.write_bytes(pickle.dumps(kernel_job._work(self.order)))
+        return b"", b""
+
+    def poll(self) -> int:
+        return self.returncode
+
+
+@pytest.fixture(scope="session")
+def stand_in() -> SimpleNamespace:
+    """What to put in the place of ``subprocess`` to have the kernel's work done here."""
+    return SimpleNamespace(Popen=KernelProcess, DEVNULL=None, PIPE=None)
+
+
+@pytest.fixture(scope="module")
+def kernel_here(stand_in: SimpleNamespace) -> Iterator[None]:
+    """Let runs use the kernel that is loaded here: another process takes seconds to load it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kernel_job, "subprocess", stand_in)
+        yield

@@ -9,7 +9,7 @@ import pytest
 
 from fabrication import cli
 
-pytestmark = pytest.mark.xdist_group("kernel")
+pytestmark = [pytest.mark.xdist_group("kernel"), pytest.mark.usefixtures("kernel_here")]
 
 SMALL = """
 name = "small"

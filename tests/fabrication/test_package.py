@@ -12,7 +12,7 @@ from fabrication.cut import area
 from fabrication.errors import OutputError, StockError
 from gridshell.mesh import grid_quads
 
-pytestmark = pytest.mark.xdist_group("kernel")
+pytestmark = [pytest.mark.xdist_group("kernel"), pytest.mark.usefixtures("kernel_here")]
 
 SMALL = {
     "name": "small",
@@ -58,7 +58,7 @@ def earlier(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def done(earlier):
+def done(earlier, kernel_here):
     """The folder after a run, what the run returned, and the stages it announced."""
     stages = []
     report = fab.run(project(), earlier, announce=stages.append)
@@ -179,7 +179,7 @@ def test_sheets_and_assembly_hold_every_lamella(done):
 
 
 @pytest.fixture(scope="module")
-def special(tmp_path_factory):
+def special(tmp_path_factory, kernel_here):
     """A folder made with every setting other than the usual one."""
     out = tmp_path_factory.mktemp("special") / "out"
     own = {"name": "corten", "modulus": 210e3, "strength": 355.0, "density": 1000.0}
