@@ -1,7 +1,8 @@
 """The CAD kernel at work in a process of its own: make the solids, write STEP, read it back.
 
-The kernel takes seconds to load and most of the time of a run; beside it the sheets are written
-and the fit is tried on the other core. A kernel that crashes takes only its own process along.
+The kernel takes seconds to load and most of the time of a run. It loads while the net is designed,
+and works beside the sheets and the fit on the other core. A kernel that crashes takes only its own
+process along.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from fabrication.errors import KernelError
 from fabrication.export.step_reader import StepPart
@@ -37,50 +39,74 @@ class KernelResult:
     seconds: dict[str, float]
 
 
+class Kernel:
+    """A process that loads the CAD kernel and waits for its one order."""
+
+    def __init__(self, folder: Path) -> None:
+        self._order, self._answer = folder / "order", folder / "answer"
+        module = ("-m", "fabrication.kernel_job")
+        self._process: subprocess.Popen[bytes] = subprocess.Popen(
+            [sys.executable, *module, str(self._order), str(self._answer)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+        )
+
+    def order(
+        self, structure: Structure, parts: Sequence[FlatPart], *, name: str, step: Path
+    ) -> None:
+        """Have the solids of *parts* made and written to *step*; does not wait."""
+        self._order.write_bytes(pickle.dumps((structure, tuple(parts), name, step.absolute())))
+        with suppress(BrokenPipeError):  # a process that has ended is told by result()
+            self._tell("go")
+
+    def result(self) -> KernelResult:
+        """Wait for the order to be done.
+
+        Raises
+        ------
+        KernelError
+            When the kernel is missing, refuses a solid, or crashes.
+        OutputError
+            When the file cannot be written.
+        """
+        _, complaint = self._process.communicate()
+        if not self._answer.exists():
+            last = complaint.decode(errors="replace").strip().splitlines()[-1:]
+            raise KernelError(
+                "The CAD kernel stopped without an answer",
+                value=f"exit code {self._process.returncode} {' '.join(last)}".strip(),
+            )
+        found: KernelResult | GridshellError = pickle.loads(self._answer.read_bytes())
+        if isinstance(found, GridshellError):
+            raise found
+        return found
+
+    def end(self) -> None:
+        """End the process, whatever it does."""
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.communicate()
+
+    def _tell(self, word: str) -> None:
+        pipe: Any = self._process.stdin
+        pipe.write(f"{word}\n".encode())
+        pipe.flush()
+
+
 @contextmanager
-def kernel_job(
-    structure: Structure, parts: Sequence[FlatPart], *, name: str, step: Path
-) -> Iterator[Callable[[], KernelResult]]:
-    """Start making *step*; the function handed out waits for the result.
-
-    The process is ended when the block is left before it is done.
-
-    Raises
-    ------
-    KernelError
-        From the function: when the kernel is missing, refuses a solid, or crashes.
-    OutputError
-        From the function: when the file cannot be written.
-    """
+def kernel() -> Iterator[Kernel]:
+    """Start loading the CAD kernel; the process is ended when the block is left."""
     with tempfile.TemporaryDirectory(prefix="gridshell-") as folder:
-        order, answer = Path(folder, "order"), Path(folder, "answer")
-        order.write_bytes(pickle.dumps((structure, tuple(parts), name, step.absolute())))
-        command = [sys.executable, "-m", "fabrication.kernel_job", str(order), str(answer)]
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-
-        def result() -> KernelResult:
-            _, complaint = process.communicate()
-            if not answer.exists():
-                last = complaint.decode(errors="replace").strip().splitlines()[-1:]
-                raise KernelError(
-                    "The CAD kernel stopped without an answer",
-                    value=f"exit code {process.returncode} {' '.join(last)}".strip(),
-                )
-            found: KernelResult | GridshellError = pickle.loads(answer.read_bytes())
-            if isinstance(found, GridshellError):
-                raise found
-            return found
-
+        process = Kernel(Path(folder))
         try:
-            yield result
+            yield process
         finally:
-            if process.poll() is None:
-                process.kill()
-                process.communicate()
+            process.end()
 
 
-def _work(order: Path) -> KernelResult | GridshellError:
-    structure, parts, name, step = pickle.loads(order.read_bytes())
+def _work(order: Path, wait: Any) -> KernelResult | GridshellError | None:
+    """Load the kernel, *wait* for the word, and do the work; None when no word came."""
     seconds: dict[str, float] = {}
     start = time.perf_counter()
 
@@ -93,6 +119,13 @@ def _work(order: Path) -> KernelResult | GridshellError:
         from fabrication.solid import solids
 
         lap("CAD kernel")
+    except GridshellError as error:
+        return error
+    if not wait():
+        return None
+    try:
+        structure, parts, name, step = pickle.loads(order.read_bytes())
+        lap("waiting")
         bodies = solids(structure, parts)
         lap("solids")
         write_step(assembly(bodies, structure, name=name), step)
@@ -107,4 +140,6 @@ def _work(order: Path) -> KernelResult | GridshellError:
 if __name__ == "__main__":
     from fabrication import kernel_job as this  # pickles name the module, not __main__
 
-    Path(sys.argv[2]).write_bytes(pickle.dumps(this._work(Path(sys.argv[1]))))
+    answer = this._work(Path(sys.argv[1]), sys.stdin.readline)
+    if answer is not None:
+        Path(sys.argv[2]).write_bytes(pickle.dumps(answer))

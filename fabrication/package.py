@@ -22,7 +22,7 @@ from fabrication.delivery import draft_folder, move_in
 from fabrication.finding import Finding, Severity
 from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
-from fabrication.kernel_job import kernel_job
+from fabrication.kernel_job import Kernel, kernel
 from fabrication.nesting import NestedSheet, nest
 from fabrication.parts import FlatPart, flat_parts
 from fabrication.project import AsymptoticPatchSection, MeshSection, Project
@@ -114,8 +114,8 @@ def run(
     """
     out = Path(out)
     clock = _Clock(announce)
-    with draft_folder(out) as draft:
-        report = _write(project, _design(project, Path(folder), clock), draft, clock)
+    with draft_folder(out) as draft, kernel() as cad:
+        report = _write(project, _design(project, Path(folder), clock), draft, cad, clock)
         move_in(draft, out, stale=("sheets/sheet-*.dxf",))
     return report
 
@@ -197,6 +197,7 @@ def _write(
     project: Project,
     designed: tuple[_Design, Report, list[Finding]],
     draft: Path,
+    cad: Kernel,
     clock: _Clock,
 ) -> Report:
     from fabrication.export.dxf import read_dxf, write_dxf
@@ -204,19 +205,18 @@ def _write(
     from fabrication.loop import compare
 
     design, net_report, findings = designed
-    step = draft / "structure.step"
-    with kernel_job(design.structure, design.parts, name=project.name, step=step) as finish:
-        with clock.stage("fit"):
-            fitted = fit(design.structure, design.parts)
-        with clock.stage("sheets"):
-            gs.write_net(draft / "net.json", design.control)
-            gs.write_obj(draft / "net.obj", design.control.mesh, unit=gs.Unit.MM)
-            sheet_files = write_dxf(design.sheets, draft / "sheets")
-            material = design.structure.profile.material
-            write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
-            drawn = [part for path in sheet_files for part in read_dxf(path)]
-        with clock.stage("solids"):
-            solid = finish()
+    cad.order(design.structure, design.parts, name=project.name, step=draft / "structure.step")
+    with clock.stage("fit"):
+        fitted = fit(design.structure, design.parts)
+    with clock.stage("sheets"):
+        gs.write_net(draft / "net.json", design.control)
+        gs.write_obj(draft / "net.obj", design.control.mesh, unit=gs.Unit.MM)
+        sheet_files = write_dxf(design.sheets, draft / "sheets")
+        material = design.structure.profile.material
+        write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
+        drawn = [part for path in sheet_files for part in read_dxf(path)]
+    with clock.stage("solids"):
+        solid = cad.result()
     with clock.stage("closure"):
         skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
         net = skins[0 if project.net.skin == "D1" else 1]

@@ -31,7 +31,7 @@ try:
     from OCP.BRepGProp import BRepGProp
     from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface, Geom_Line, Geom_Plane
     from OCP.Geom2d import Geom2d_Line
-    from OCP.gp import gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
+    from OCP.gp import gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
     from OCP.GProp import GProp_GProps
     from OCP.TColgp import TColgp_Array2OfPnt
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
@@ -138,7 +138,7 @@ class _Builder:
         """The solid over *outline* (k, 2), counter-clockwise with axis-parallel edges."""
         corners = [side.points(outline[:, 0], outline[:, 1]) for side in self.sides]
         lines = [_outline_line(outline, i) for i in range(len(outline))]
-        self.tolerance = _wall_tolerance(corners, lines, self.thickness)
+        planes, self.tolerance = _wall_planes(corners, lines, self.thickness)
         vertices = [[self._vertex(p) for p in points] for points in corners]
         across = [
             self._straight(corners[0][i], corners[1][i], vertices[0][i], vertices[1][i])
@@ -154,17 +154,14 @@ class _Builder:
             low, high = across[i], across[(i + 1) % len(outline)]
             if not line.increasing:
                 low, high = high, low
-            if line.along_u:
-                surface = self._edge_surface(line, near, far, low, high)
-            else:
-                surface = _plane(corners, i, line)
+            surface = planes.get(i) or self._edge_surface(line, near, far, low, high)
             wire = self._wire([(near, True), (high, True), (far, False), (low, False)])
             faces.append(self._face(surface, wire, forward=line.increasing))
         return self._close(faces)
 
     def _vertex(self, point: Floats) -> TopoDS_Vertex:
         vertex = TopoDS_Vertex()
-        self.tool.MakeVertex(vertex, gp_Pnt(*map(float, point)), self.tolerance)
+        self.tool.MakeVertex(vertex, gp_Pnt(*point.tolist()), self.tolerance)
         return vertex
 
     def _edge(
@@ -180,9 +177,9 @@ class _Builder:
     def _straight(
         self, a: Floats, b: Floats, first: TopoDS_Vertex, last: TopoDS_Vertex
     ) -> TopoDS_Edge:
-        length = float(np.linalg.norm(b - a))
-        direction = gp_Dir(*map(float, (b - a) / length))
-        return self._edge(Geom_Line(gp_Pnt(*map(float, a)), direction), first, last, 0.0, length)
+        start, end = gp_Pnt(*a.tolist()), gp_Pnt(*b.tolist())
+        line = Geom_Line(start, gp_Dir(gp_Vec(start, end)))
+        return self._edge(line, first, last, 0.0, start.Distance(end))
 
     def _rim(
         self, k: int, line: _Line, corners: Floats, vertices: Sequence[TopoDS_Vertex], i: int
@@ -286,40 +283,32 @@ def _knots(
     return reals, integers
 
 
-def _plane(corners: Sequence[Floats], i: int, line: _Line) -> Geom_Plane:
-    """The plane of a vertical wall, its normal in the direction of the strip."""
-    middle, normal, _ = _wall_planes(corners, [i])
-    sign = 1.0 if line.increasing else -1.0
-    direction = gp_Dir(*map(float, sign * normal[0]))
-    return Geom_Plane(gp_Pnt(*map(float, middle[0])), direction)
+def _wall_planes(
+    corners: Sequence[Floats], lines: Sequence[_Line], thickness: float
+) -> tuple[dict[int, Geom_Plane], float]:
+    """Planes of the vertical walls by outline edge, and the tolerance that they need.
 
-
-def _wall_planes(corners: Sequence[Floats], walls: Sequence[int]) -> tuple[Floats, Floats, Floats]:
-    """Middles, normals out of the material and largest offsets of the walls' four corners."""
+    A normal points in the direction of the strip. The tolerance covers what walls are out of plane
+    and straight edges off their length; both come from interpolating the corner curves and stay
+    around 1e-6 mm on smooth strips.
+    """
+    walls = [i for i, line in enumerate(lines) if not line.along_u]
     near, far = corners
-    first = np.asarray(walls)
-    second = (first + 1) % len(near)
+    first, second = np.asarray(walls), (np.asarray(walls) + 1) % len(near)
     points = np.stack([near[first], near[second], far[second], far[first]], axis=1)
     middle = points.mean(axis=1)
     normal = unit(np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1]))
-    offset = np.abs(np.einsum("mkc,mc->mk", points - middle[:, None], normal)).max(axis=1)
-    return middle, normal, offset
-
-
-def _wall_tolerance(corners: Sequence[Floats], lines: Sequence[_Line], thickness: float) -> float:
-    """A tolerance that covers what walls are out of plane and straight edges off their length.
-
-    Both come from interpolating the corner curves and stay around 1e-6 mm on smooth strips.
-    """
-    walls = [i for i, line in enumerate(lines) if not line.along_u]
-    _, _, offset = _wall_planes(corners, walls)
+    offset = np.abs(np.einsum("mkc,mc->mk", points - middle[:, None], normal))
     heights = np.array([lines[i].high - lines[i].low for i in walls])
-    across = np.abs(np.linalg.norm(corners[0] - corners[1], axis=1) - thickness)
-    up = [
-        np.abs(np.linalg.norm(np.roll(side, -1, axis=0)[walls] - side[walls], axis=1) - heights)
-        for side in corners
-    ]
-    return max(_TOLERANCE, *(2.0 * float(np.max(x)) for x in (offset, across, *up)))
+    across = np.abs(np.linalg.norm(near - far, axis=1) - thickness)
+    up = [np.abs(np.linalg.norm(side[second] - side[first], axis=1) - heights) for side in corners]
+    tolerance = max(_TOLERANCE, *(2.0 * float(np.max(x)) for x in (offset, across, *up)))
+    along = normal * np.where([lines[i].increasing for i in walls], 1.0, -1.0)[:, None]
+    planes = {
+        i: Geom_Plane(gp_Pnt(*point), gp_Dir(*direction))
+        for i, point, direction in zip(walls, middle.tolist(), along.tolist(), strict=True)
+    }
+    return planes, tolerance
 
 
 def _side_surface(side: Side) -> Geom_BSplineSurface:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from io import BytesIO
 from itertools import pairwise
 from math import radians
 from pathlib import Path
@@ -211,9 +212,11 @@ class KernelProcess:
 
     def __init__(self, command: Sequence[str], **_: Any) -> None:
         self.order, self.answer = map(Path, command[-2:])
+        self.stdin = BytesIO()
 
     def communicate(self) -> tuple[bytes, bytes]:
-        self.answer.write_bytes(pickle.dumps(kernel_job._work(self.order)))
+        answer = kernel_job._work(self.order, self.stdin.getvalue)
+        self.answer.write_bytes(pickle.dumps(answer))
         return b"", b""
 
     def poll(self) -> int:

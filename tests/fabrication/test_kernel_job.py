@@ -10,7 +10,7 @@ import gridshell as gs
 from fabrication import kernel_job as module
 from fabrication.cut import Edge, Slot
 from fabrication.errors import KernelError, OutputError, ProjectError, StockError
-from fabrication.kernel_job import kernel_job
+from fabrication.kernel_job import kernel
 
 pytestmark = pytest.mark.xdist_group("kernel")
 
@@ -21,15 +21,16 @@ def here(monkeypatch, stand_in):
     monkeypatch.setattr(module, "subprocess", stand_in)
 
 
-def job(design, step, parts=None):
-    parts = design.parts if parts is None else parts
-    return kernel_job(design.structure, parts, name="shell", step=step)
+def make(design, step, parts=None):
+    with kernel() as cad:
+        parts = design.parts if parts is None else parts
+        cad.order(design.structure, parts, name="shell", step=step)
+        return cad.result()
 
 
 def test_a_process_of_its_own_writes_the_solids_and_brings_back_what_the_file_says(pair, tmp_path):
     step = tmp_path / "structure.step"
-    with job(pair, step) as finish:
-        result = finish()
+    result = make(pair, step)
     assert [part.mark for part in result.parts] == [one.mark for one in pair.structure.lamellas]
     for found, read in zip(result.parts, fab.read_step(step), strict=True):
         assert found.loop.tolist() == read.loop.tolist()
@@ -46,19 +47,16 @@ def test_a_solid_that_is_refused_is_told_in_the_same_words(pair, with_slots, tmp
     parts = (with_slots(pair.parts[0], slots), *pair.parts[1:])
     with pytest.raises(KernelError) as expected:
         fab.solids(pair.structure, parts)
-    with (
-        job(pair, tmp_path / "structure.step", parts) as finish,
-        pytest.raises(KernelError) as info,
-    ):
-        finish()
+    with pytest.raises(KernelError) as info:
+        make(pair, tmp_path / "structure.step", parts)
     assert str(info.value) == str(expected.value)
     assert info.value.where == "A1"
 
 
 def test_a_file_that_cannot_be_written_is_an_output_error(pair, tmp_path, here):
     step = tmp_path / "missing" / "structure.step"
-    with job(pair, step) as finish, pytest.raises(OutputError, match="cannot be written") as info:
-        finish()
+    with pytest.raises(OutputError, match="cannot be written") as info:
+        make(pair, step)
     assert info.value.where == str(step)
 
 
@@ -88,19 +86,47 @@ def program(tmp_path, monkeypatch):
 
 def test_a_process_that_crashes_is_told_with_its_last_words(pair, program, tmp_path):
     program("echo first >&2; echo last >&2; exit 3")
-    with job(pair, tmp_path / "x.step") as finish, pytest.raises(KernelError) as info:
-        finish()
+    with pytest.raises(KernelError) as info:
+        make(pair, tmp_path / "x.step")
     assert info.value.what == "The CAD kernel stopped without an answer"
     assert info.value.value == "exit code 3 last"
 
 
 def test_a_process_that_says_much_does_not_stand_still(pair, program, tmp_path):
     program("head -c 300000 /dev/zero | tr '\\0' 'x' >&2; exit 1")
-    with job(pair, tmp_path / "x.step") as finish, pytest.raises(KernelError, match="exit code 1"):
-        finish()
+    with pytest.raises(KernelError, match="exit code 1"):
+        make(pair, tmp_path / "x.step")
 
 
-def test_leaving_early_ends_the_process(pair, program, tmp_path, monkeypatch):
+def test_a_process_that_is_gone_before_its_order_is_told_with_its_last_words(
+    pair, program, tmp_path
+):
+    program("echo gone >&2; exit 3")
+    with kernel() as cad:
+        cad._process.wait()
+        cad.order(pair.structure, pair.parts, name="shell", step=tmp_path / "x.step")
+        with pytest.raises(KernelError, match="exit code 3 gone"):
+            cad.result()
+
+
+def test_a_kernel_that_gets_no_order_does_nothing(tmp_path):
+    assert module._work(tmp_path / "order", lambda: "") is None
+
+
+def test_a_kernel_that_cannot_be_loaded_is_told_before_any_order(monkeypatch, tmp_path):
+    missing = KernelError("The CAD kernel cannot be loaded")
+
+    class Broken:
+        def find_spec(self, name, *_):
+            if name == "fabrication.solid":
+                raise missing
+
+    monkeypatch.delitem(sys.modules, "fabrication.solid")
+    monkeypatch.setattr(sys, "meta_path", [Broken(), *sys.meta_path])
+    assert module._work(tmp_path / "order", lambda: pytest.fail("it waits")) is missing
+
+
+def test_leaving_early_ends_the_process(program, monkeypatch):
     program("exec sleep 600")
     started = []
 
@@ -110,7 +136,7 @@ def test_leaving_early_ends_the_process(pair, program, tmp_path, monkeypatch):
             started.append(self)
 
     monkeypatch.setattr(module.subprocess, "Popen", Noted)
-    with pytest.raises(KeyboardInterrupt), job(pair, tmp_path / "x.step"):
+    with pytest.raises(KeyboardInterrupt), kernel():
         raise KeyboardInterrupt
     (process,) = started
     assert process.returncode is not None
@@ -121,7 +147,6 @@ def test_leaving_early_ends_the_process(pair, program, tmp_path, monkeypatch):
 def test_nothing_but_the_assembly_is_left(pair, tmp_path, monkeypatch, here):
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
-    with job(pair, tmp_path / "structure.step") as finish:
-        finish()
+    make(pair, tmp_path / "structure.step")
     assert list((tmp_path / "temporary").iterdir()) == []
     assert (tmp_path / "structure.step").is_file()
