@@ -279,7 +279,7 @@ def _net_report(result: gs.OptimizedNet, seconds: float) -> Report:
         "status": result.status,
         "angle_error_deg": quality.angle_error_deg and asdict(quality.angle_error_deg),
         "node_angle_deg": {"min": angle_low, "max": angle_high},
-        "star_planarity": asdict(quality.star_planarity),
+        "star_planarity": quality.star_planarity and asdict(quality.star_planarity),
         "edge_ratio": {"min": low, "max": high},
         "surface_distance_mm": quality.surface_distance_mm and asdict(quality.surface_distance_mm),
         "curvature_ratio": quality.curvature_ratio,

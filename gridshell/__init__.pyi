@@ -15,6 +15,9 @@ from .anchors import (
 from .anchors import (
     Pinned as Pinned,
 )
+from .angles import RadialAngle as RadialAngle
+from .conditions import EdgeLengths as EdgeLengths
+from .conditions import MirrorPlane as MirrorPlane
 from .curvature import (
     principal_curvatures as principal_curvatures,
 )
@@ -66,6 +69,7 @@ from .io import (
 from .io import (
     read_obj as read_obj,
 )
+from .io import read_surface as read_surface
 from .io import (
     write_net as write_net,
 )
@@ -117,6 +121,9 @@ from .mesh import (
 from .mesh import (
     two_colouring as two_colouring,
 )
+from .mesh import without_families as without_families
+from .net_report import history_report as history_report
+from .net_report import net_report as net_report
 from .optimization import OptimizedNet as OptimizedNet
 from .optimization import optimize as optimize
 from .patch import (
@@ -144,10 +151,13 @@ from .quality import (
     node_angles as node_angles,
 )
 from .recipes import (
-    ANet as ANet,
+    NetRecipe as NetRecipe,
 )
 from .recipes import (
-    PaperANet as PaperANet,
+    PaperRecipe as PaperRecipe,
+)
+from .recipes import (
+    Planarity as Planarity,
 )
 from .recipes import (
     Recipe as Recipe,
@@ -158,8 +168,24 @@ from .recipes import (
 from .recipes import (
     paper_a_net as paper_a_net,
 )
+from .recipes import (
+    paper_pq_net as paper_pq_net,
+)
+from .recipes import (
+    pq_net as pq_net,
+)
+from .recipes import (
+    principal_symmetric_net as principal_symmetric_net,
+)
+from .solve import End as End
+from .solve import Engine as Engine
 from .solve import Progress as Progress
+from .solve import State as State
 from .solve import Step as Step
+from .solve import Stop as Stop
+from .solve import Weight as Weight
+from .soundness import remarks as remarks
+from .soundness import require_sound as require_sound
 from .surface import (
     AnalyticSurface as AnalyticSurface,
 )
@@ -193,3 +219,5 @@ from .surface import (
 from .surface import (
     Torus as Torus,
 )
+from .surface import TriangulatedSurface as TriangulatedSurface
+from .verdict import Verdict as Verdict

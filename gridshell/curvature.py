@@ -17,8 +17,12 @@ _FLAT = 1e-8
 _TOLERATED = 0.01
 
 
-def principal_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats]:
+def principal_curvatures(mesh: QuadMesh, *, most: int | None = None) -> tuple[Indices, Floats]:
     """Principal curvatures at the vertices whose two rings hold enough neighbours.
+
+    Parameters
+    ----------
+    most : vertices measured at most, evenly spread over their numbers; None measures all.
 
     Returns
     -------
@@ -26,7 +30,7 @@ def principal_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats]:
     curvatures : (m, 2) kappa1 <= kappa2, 1/mm; positive where the surface bends towards the
         normal of its counter-clockwise side.
     """
-    centre, neighbours = _two_rings(mesh)
+    centre, neighbours = _two_rings(mesh, most)
     if len(centre) == 0:
         return centre, np.empty((0, 2))
     inside = neighbours >= 0
@@ -78,7 +82,7 @@ def vertex_normals(mesh: QuadMesh) -> Vectors:
     return unit(total)
 
 
-def _two_rings(mesh: QuadMesh) -> tuple[Indices, Indices]:
+def _two_rings(mesh: QuadMesh, most: int | None) -> tuple[Indices, Indices]:
     """Interior vertices and their neighbours over two rings of quads, padded with -1."""
     from scipy.sparse import csr_matrix
 
@@ -90,6 +94,8 @@ def _two_rings(mesh: QuadMesh) -> tuple[Indices, Indices]:
     counts = np.diff(two.indptr)
     inner = ~mesh.on_boundary & (mesh.valence > 0) & (counts > _LEAST_SAMPLES)
     centre = np.flatnonzero(inner)
+    if most is not None and len(centre) > most:
+        centre = centre[:: -(-len(centre) // most)]
     neighbours = np.full((len(centre), int(counts[centre].max(initial=0))), -1, dtype=np.int64)
     slots = np.arange(neighbours.shape[1])
     valid = slots < counts[centre][:, None]

@@ -1,17 +1,19 @@
-"""From a control mesh to an exact net: normalise, pose, solve, scale back."""
+"""From a control mesh to an exact net: check, normalise, pose, solve, scale back, judge."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from gridshell.anchors import Anchor
-from gridshell.arrays import Points
-from gridshell.errors import MeshError, SolveError
+from gridshell.errors import SolveError
 from gridshell.mesh import ControlMesh
+from gridshell.pose import pose
 from gridshell.quality import NetQuality, net_quality
 from gridshell.recipes import Recipe
-from gridshell.solve import Progress, Step, solve
-from gridshell.surface import Foot, Surface
+from gridshell.solve import End, Progress, State, Step, history, solve
+from gridshell.soundness import remarks, require_sound
+from gridshell.surface import Surface
+from gridshell.verdict import Verdict, verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,27 +22,48 @@ class OptimizedNet:
 
     Parameters
     ----------
-    control : the control mesh where the solver stopped, in the units it came in.
-    converged : whether every goal reached the tolerance.
+    control : the control mesh after the last step taken, in mm.
+    end : why the solver stopped.
     status : one sentence.
     steps : the history, one entry per factorisation.
     quality : what the net is judged by.
+    verdict : why this is not the net that was asked for; None when it is.
+    remarks : sentences about what is odd about the mesh but harmless.
+    state : to go on from with ``optimize(..., resume=state)``.
+    memory : largest memory of a factorisation, MiB.
     """
 
     control: ControlMesh
-    converged: bool
+    end: End
     status: str
     steps: tuple[Step, ...]
     quality: NetQuality
+    verdict: Verdict | None
+    remarks: tuple[str, ...]
+    state: State
+    memory: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether every goal reached the tolerance and the net kept its shape."""
+        return self.end is End.CONVERGED and self.verdict is None
 
     def require(self) -> OptimizedNet:
-        """Itself, or SolveError with the status sentence."""
+        """Itself, or SolveError with status and verdict."""
         if not self.converged:
+            what = self.status if self.verdict is None else f"{self.status} {self.verdict.message}"
             raise SolveError(
-                self.status.rstrip("."),
-                advice="another angle, a start closer to the net, or a freer anchor",
+                what.rstrip("."),
+                advice="another angle, a start closer to the net, a freer anchor, or more steps",
             )
         return self
+
+    def report(self) -> str:
+        """Status, verdict, remarks and the full history, for a terminal."""
+        lines = [history(self.status, self.steps)]
+        if self.verdict is not None:
+            lines.append(self.verdict.message)
+        return "\n".join([*lines, *self.remarks])
 
 
 def optimize(
@@ -50,54 +73,56 @@ def optimize(
     anchor: Anchor,
     reference: Surface | None = None,
     progress: Progress | None = None,
+    resume: State | None = None,
 ) -> OptimizedNet:
-    """Move the vertices of *control* until its diagonal meshes meet the recipe.
+    """Move the vertices of *control* until they meet the recipe.
 
     The mesh is scaled to mean edge 1 around its centroid, so the result does not depend on units
-    or on the distance from the origin.
+    or on the distance from the origin. No step turns a quad over. Ctrl-C ends it after the last
+    step taken.
 
     Parameters
     ----------
     control : the start.
     recipe : the conditions, e.g. ``a_net(angle=radians(60))``.
     anchor : what holds the shape: Free(), Pinned(...), BoundaryPinned() or BoundaryGlide().
-    reference : surface to stay close to, same units as the mesh.
+    reference : surface to stay close to, mm.
     progress : called after every step with its number and the step.
+    resume : where an earlier call with the same control mesh and recipe was left.
 
     Raises
     ------
     MeshError
-        When all vertices coincide.
+        When the mesh is torn, folded or has quads without area; the place is named.
     SettingError
-        When the anchor names a vertex that does not exist.
+        When the anchor or a condition names what does not exist.
     SolveError
         When the linear system cannot be factored.
     """
-    used = control.mesh.valence > 0
-    centre, scale = control.vertices[used].mean(axis=0), control.mesh.mean_edge
-    if not scale > 0.0:
-        raise MeshError("All vertices of the mesh coincide", value="mean edge 0 mm")
-    x = (control.vertices - centre) / scale
-    posed = control.moved(x)
-    surface = None if reference is None else _Scaled(reference, centre, scale)
-    problem, start = recipe.problem(posed, x, anchor.hold(posed, x), surface)
-    solution = solve(problem, start, recipe.stop, progress)
-    moved = solution.x[: x.size].reshape(-1, 3) * scale + centre
+    require_sound(control.mesh)
+    posed = pose(control, anchor, reference)
+    problem, start = recipe.problem(posed)
+    solution = solve(problem, start, recipe.stop, progress, resume=resume)
+    moved = posed.outside(solution.x[: control.vertices.size].reshape(-1, 3))
     result = control.moved(moved)
-    quality = net_quality(result, angle=recipe.angle, reference=reference)
-    return OptimizedNet(result, solution.converged, solution.status, solution.steps, quality)
+    return OptimizedNet(
+        result,
+        solution.end,
+        solution.status,
+        solution.steps,
+        _quality(result, recipe, reference),
+        verdict(problem, solution, control, result, recipe.stop.tolerance),
+        remarks(control.mesh),
+        solution.state,
+        solution.memory,
+    )
 
 
-@dataclass(frozen=True, eq=False)
-class _Scaled:
-    """A surface seen in the solver's units."""
-
-    surface: Surface
-    centre: Points
-    scale: float
-
-    def closest(self, points: Points) -> Foot:
-        foot = self.surface.closest(points * self.scale + self.centre)
-        return Foot(
-            (foot.points - self.centre) / self.scale, foot.normals, foot.curvature * self.scale
-        )
+def _quality(result: ControlMesh, recipe: Recipe, reference: Surface | None) -> NetQuality:
+    return net_quality(
+        result,
+        planarity=recipe.planarity,
+        angle=recipe.angle,
+        rhombus=recipe.rhombus,
+        reference=reference,
+    )

@@ -1,8 +1,11 @@
 """A net is judged by these figures, never by the solver's energy.
 
 Definitions: star planarity = largest distance of a star's neighbours from the best plane through
-its centre, over the star's mean edge; angle error = difference from the target between the two
-diagonals of a control quad (eq. 4).
+its centre, over the star's mean edge; face planarity = distance of the two diagonals over their
+mean length; angle error = difference from the target between the two diagonals of a control quad
+(eq. 4), or between the two families of edges; rhombus error = difference of the two diagonals over
+their mean length; sphericity = offset of a star's last neighbour from the sphere of the others,
+over the star's mean edge.
 """
 
 from __future__ import annotations
@@ -11,10 +14,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.arrays import Floats
+from gridshell.angles import Angle, crossing_angles
+from gridshell.arrays import Floats, Indices
+from gridshell.constraints import spherical_stars
 from gridshell.curvature import principal_curvatures
-from gridshell.mesh import ControlMesh, DiagonalMesh, Stars, diagonal_meshes
+from gridshell.folding import collapsed, corner_angles
+from gridshell.mesh import (
+    ControlMesh,
+    DiagonalMesh,
+    Stars,
+    diagonal_meshes,
+    diagonal_stars,
+    edge_stars,
+)
+from gridshell.recipes import Planarity, crossings, planar_stars, target_angles
 from gridshell.surface import Surface
+
+_SAMPLES = 10_000
+"""Vertices at which curvature is estimated at most."""
 
 
 @dataclass(frozen=True)
@@ -27,43 +44,129 @@ class Spread:
 
 @dataclass(frozen=True)
 class NetQuality:
-    """The figures of an asymptotic net.
+    """The figures of a net.
 
     Parameters
     ----------
-    star_planarity : over all stars with three spokes or more, of D1 and D2.
+    star_planarity : over all stars with three spokes or more that shall be planar: boundary and
+        singular ones included. None for a net of planar faces.
+    face_planarity : over all faces that shall be planar; None for a net of planar stars.
+    sphericity : over all stars of four; None where they need not be spherical.
     angle_error_deg : None where no angle was asked for.
-    node_angle_deg : smallest and largest angle between the diagonals.
-    edge_ratio : shortest and longest edge of D1 over their mean.
+    node_angle_deg : smallest and largest angle at the crossings.
+    rhombus_error : None where no rhombi were asked for.
+    edge_ratio : shortest and longest edge of the net over their mean: of D1, or of the mesh itself
+        where its own edges or faces are the net.
+    corner_angle_deg : smallest and largest corner of a quad.
+    collapsed : quads turned over, concave or squeezed to slivers.
     surface_distance_mm : None without a reference.
     curvature_ratio : median of kappa1 / kappa2 estimated from the mesh alone; for an A-net of
         constant angle it is ``-tan(angle / 2)^2``. None where the mesh is too small to tell.
     """
 
-    star_planarity: Spread
+    star_planarity: Spread | None
+    face_planarity: Spread | None
+    sphericity: Spread | None
     angle_error_deg: Spread | None
     node_angle_deg: tuple[float, float]
+    rhombus_error: Spread | None
     edge_ratio: tuple[float, float]
+    corner_angle_deg: tuple[float, float]
+    collapsed: int
     surface_distance_mm: Spread | None
     curvature_ratio: float | None
 
 
 def net_quality(
-    control: ControlMesh, *, angle: float | None = None, reference: Surface | None = None
+    control: ControlMesh,
+    *,
+    planarity: Planarity = Planarity.DIAGONAL_STARS,
+    angle: Angle | None = None,
+    rhombus: bool = False,
+    reference: Surface | None = None,
 ) -> NetQuality:
-    """Measure the diagonal meshes of *control*; *angle* in radians."""
-    first, second = diagonal_meshes(control)
-    planarity = np.concatenate([star_planarity(m.vertices, m.stars) for m in (first, second)])
-    angles = node_angles(control)
-    error = None if angle is None else _spread(np.degrees(np.abs(angles - angle)))
+    """Measure *control* by what it shall be; *angle* in radians, lengths in mm."""
+    vertices, quads = control.vertices, control.quads
+    angles = crossing_angles(vertices, crossings(control, planarity))
+    error = None
+    if angle is not None:
+        error = _spread(np.degrees(np.abs(angles - target_angles(control, planarity, angle))))
     return NetQuality(
-        star_planarity=_spread(planarity),
+        star_planarity=_spread(star_planarity(vertices, planar_stars(control, planarity)))
+        if planarity.of_stars
+        else None,
+        face_planarity=_face_planarity(control, planarity),
+        sphericity=_sphericity(control) if planarity is Planarity.SPHERICAL_STARS else None,
         angle_error_deg=error,
-        node_angle_deg=(float(np.degrees(angles.min())), float(np.degrees(angles.max()))),
-        edge_ratio=edge_ratio(first),
+        node_angle_deg=_range(np.degrees(angles)),
+        rhombus_error=_rhombus_error(control) if rhombus else None,
+        edge_ratio=_net_edges(control, planarity),
+        corner_angle_deg=_range(np.degrees(corner_angles(vertices, quads))),
+        collapsed=int(np.count_nonzero(collapsed(vertices, quads, control.mesh.mean_edge))),
         surface_distance_mm=None if reference is None else _distance(control, reference),
         curvature_ratio=curvature_ratio(control),
     )
+
+
+def quad_planarity(corners: Floats) -> Floats:
+    """(m,) distance of the diagonals over their mean length, for corners (m, 4, 3)."""
+    first, second = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    normal = np.cross(first, second)
+    area = np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
+    mean = (np.linalg.norm(first, axis=1) + np.linalg.norm(second, axis=1)) / 2.0
+    offset = np.einsum("mc,mc->m", corners[:, 1] - corners[:, 0], normal)
+    return np.asarray(np.abs(offset) / area / mean)
+
+
+def _face_planarity(control: ControlMesh, planarity: Planarity) -> Spread | None:
+    if planarity is Planarity.FACES:
+        return _spread(quad_planarity(control.vertices[control.quads]))
+    if planarity is Planarity.WHITE_FACES:
+        rings = _white_rings(edge_stars(control.mesh))
+        return _spread(np.concatenate([_ring_planarity(control.vertices[r]) for r in rings]))
+    return None
+
+
+def _white_rings(stars: Stars) -> list[Indices]:
+    counts = np.unique(stars.count[stars.closed])
+    found = [stars.spokes[stars.closed & (stars.count == k), :k] for k in counts.tolist()]
+    return found or [np.empty((0, 4), dtype=np.int64)]
+
+
+def _ring_planarity(corners: Floats) -> Floats:
+    """(m,) planarity of polygons (m, k, 3): for more than four corners from the best plane."""
+    if corners.shape[1] == 4:
+        return quad_planarity(corners)
+    offset = corners - corners.mean(axis=1, keepdims=True)
+    normal = np.linalg.svd(offset)[2][:, 2]
+    distance = np.abs(np.einsum("mkc,mc->mk", offset, normal)).max(axis=1)
+    return np.asarray(distance / (2.0 * np.linalg.norm(offset, axis=2).mean(axis=1)))
+
+
+def _sphericity(control: ControlMesh) -> Spread:
+    constraint, x = spherical_stars(diagonal_stars(control.mesh)), control.vertices.ravel()
+    offset = np.abs(constraint.evaluate(x, constraint.lag(x)).residual[:, 0])
+    corners = control.vertices[constraint.points]
+    spokes = np.linalg.norm(corners[:, 1:] - corners[:, :1], axis=2).mean(axis=1)
+    return _spread(offset / spokes)
+
+
+def _rhombus_error(control: ControlMesh) -> Spread:
+    corners = control.vertices[control.quads]
+    length = np.linalg.norm(corners[:, 2:] - corners[:, :2], axis=2)
+    return _spread(np.abs(length[:, 0] - length[:, 1]) / length.mean(axis=1))
+
+
+def _net_edges(control: ControlMesh, planarity: Planarity) -> tuple[float, float]:
+    if planarity in (Planarity.EDGE_STARS, Planarity.FACES):
+        length = control.mesh.edge_lengths
+        return float(length.min() / length.mean()), float(length.max() / length.mean())
+    second = planarity is Planarity.SECOND_DIAGONAL_STARS
+    return edge_ratio(diagonal_meshes(control)[int(second)])
+
+
+def _range(figures: Floats) -> tuple[float, float]:
+    return (float(figures.min()), float(figures.max())) if figures.size else (0.0, 0.0)
 
 
 def star_planarity(vertices: Floats, stars: Stars) -> Floats:
@@ -80,10 +183,7 @@ def star_planarity(vertices: Floats, stars: Stars) -> Floats:
 
 def node_angles(control: ControlMesh) -> Floats:
     """(f,) angle from diagonal v0-v2 to diagonal v1-v3 of every control quad, radians."""
-    corners = control.vertices[control.quads]
-    a, b = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
-    across, along = np.linalg.norm(np.cross(a, b), axis=1), np.einsum("mc,mc->m", a, b)
-    return np.asarray(np.arctan2(across, along))
+    return crossing_angles(control.vertices, control.quads)
 
 
 def edge_ratio(net: DiagonalMesh) -> tuple[float, float]:
@@ -98,7 +198,7 @@ def curvature_ratio(control: ControlMesh) -> float | None:
 
     For ``kappa1 / kappa2 = -tan(angle / 2)^2`` with an angle of at most 90 degrees.
     """
-    _, kappa = principal_curvatures(control.mesh)
+    _, kappa = principal_curvatures(control.mesh, most=_SAMPLES)
     if len(kappa) == 0:
         return None
     small = np.where(np.abs(kappa[:, :1]) <= np.abs(kappa[:, 1:]), kappa, kappa[:, ::-1])

@@ -1,64 +1,112 @@
 """Which conditions a net must meet and with which weights: frozen settings.
 
-:func:`a_net` is the default: normals eliminated, exact derivatives, and every term that only
-guides the way lowered from step to step. :func:`paper_a_net` is the paper's own formulation
-(Table 1: normals as unknowns, constant fairness 0.1, ten steps), kept to compare with.
+:func:`a_net`, :func:`pq_net` and :func:`principal_symmetric_net` are the defaults: normals
+eliminated, exact derivatives, and every term that only guides the way lowered from step to step.
+:func:`paper_a_net` and :func:`paper_pq_net` are the paper's own formulation (Table 1: normals as
+unknowns, constant fairness, ten steps), kept to compare with.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import Enum
+from math import pi
 from typing import Protocol
 
 import numpy as np
 
-from gridshell.anchors import Hold
-from gridshell.arrays import Floats, Points
+from gridshell.angles import Angle, angles_at, edge_crossings, face_crossings
+from gridshell.arrays import Floats, Indices
+from gridshell.conditions import Condition
 from gridshell.constraints import (
     Closeness,
+    EqualDiagonals,
     Fairness,
     NodeAngle,
     Proximity,
-    StarWithNormal,
     UnitNormal,
     other_stars,
+    planar_faces,
+    planar_white_faces,
     regular_stars,
     second_differences,
+    spherical_stars,
+    stars_across_normals,
+    white_quads_across_normals,
 )
 from gridshell.curvature import vertex_normals
 from gridshell.errors import SettingError
-from gridshell.mesh import ControlMesh, diagonal_stars, edge_stars
-from gridshell.solve import Problem, Stop, Term, Weight
-from gridshell.surface import Surface
+from gridshell.folding import NoFolding
+from gridshell.mesh import ControlMesh, Stars, diagonal_stars, edge_stars
+from gridshell.pose import Pose
+from gridshell.solve import Constraint, Guard, Problem, Stop, Term, Weight
+
+
+class Planarity(Enum):
+    """What shall be flat (or, for the last one, round); the value is its name for people."""
+
+    DIAGONAL_STARS = "vertex stars of the diagonal meshes"
+    FIRST_DIAGONAL_STARS = "vertex stars of D1"
+    SECOND_DIAGONAL_STARS = "vertex stars of D2"
+    EDGE_STARS = "vertex stars of the edges"
+    FACES = "faces"
+    WHITE_FACES = "white faces of the checkerboard pattern"
+    SPHERICAL_STARS = "spherical vertex stars of the diagonal meshes"
+
+    @property
+    def of_stars(self) -> bool:
+        """Whether vertex stars are planar: an asymptotic net."""
+        return self in _STARS
+
+
+_STARS = frozenset(
+    {
+        Planarity.DIAGONAL_STARS,
+        Planarity.FIRST_DIAGONAL_STARS,
+        Planarity.SECOND_DIAGONAL_STARS,
+        Planarity.EDGE_STARS,
+    }
+)
 
 
 class Recipe(Protocol):
-    """Turns a control mesh at unit mean edge into a problem and its starting point."""
+    """Turns a posed net into a problem and its starting point."""
 
     @property
-    def angle(self) -> float | None:
+    def planarity(self) -> Planarity:
+        """What shall be flat."""
+
+    @property
+    def angle(self) -> Angle | None:
         """Target node angle, radians; None leaves it free."""
+
+    @property
+    def rhombus(self) -> bool:
+        """Whether the diagonals of every quad shall be equal."""
 
     @property
     def stop(self) -> Stop:
         """When to stop."""
 
-    def problem(
-        self, control: ControlMesh, x: Points, hold: Hold, reference: Surface | None
-    ) -> tuple[Problem, Floats]:
-        """The problem and its start; the first 3n unknowns are the vertices."""
+    def problem(self, pose: Pose) -> tuple[Problem, Floats]:
+        """The problem and its start; the first 3 n unknowns are the vertices."""
 
 
-@dataclass(frozen=True)
-class ANet:
-    """Asymptotic net on D1 and D2: planar vertex stars (eq. 7), optionally a node angle (eq. 4).
+@dataclass(frozen=True, eq=False)
+class NetRecipe:
+    """The default formulation of every net.
 
     Parameters
     ----------
-    angle : between the diagonals of every control quad, radians; None leaves it free.
+    planarity : eq. 6, eq. 7, or one of their relatives.
+    angle : between the diagonals of every control quad (eq. 4), or for ``EDGE_STARS`` between the
+        two families of edges: radians, one for all, one per crossing, or a field over positions
+        in mm; None leaves it free.
+    rhombus : equal diagonals in every quad (eq. 5).
     keep_shape : fairness acts on the change from the start. False straightens the polylines
         themselves, which suits a noisy start.
     fairness, closeness, proximity : guiding weights; closeness None leaves the term out.
+    conditions : more of them: prescribed lengths, planes of symmetry.
     stop : steps and tolerance.
 
     Raises
@@ -67,134 +115,302 @@ class ANet:
         For an angle outside (0, 180) degrees.
     """
 
-    angle: float | None = None
+    planarity: Planarity = Planarity.DIAGONAL_STARS
+    angle: Angle | None = None
+    rhombus: bool = False
     keep_shape: bool = True
     fairness: Weight = field(default=Weight(1e-2, 0.1))
     closeness: Weight | None = None
     proximity: Weight = field(default=Weight(0.1, 0.3))
+    conditions: tuple[Condition, ...] = ()
     stop: Stop = field(default=Stop(steps=30, tolerance=1e-9))
 
     def __post_init__(self) -> None:
         _check_angle(self.angle)
 
-    def problem(
-        self, control: ControlMesh, x: Points, hold: Hold, reference: Surface | None
-    ) -> tuple[Problem, Floats]:
-        """Stars and angle as goals; fairness, closeness, proximity and the anchor as guides."""
-        start = x.ravel()
-        stars = diagonal_stars(control.mesh)
-        triples = _polyline_triples(control)
+    def problem(self, pose: Pose) -> tuple[Problem, Floats]:
+        """Planarity, angle, rhombi as goals; fairness, closeness, proximity, anchor as guides."""
+        control = pose.control
+        start = control.vertices.ravel()
+        triples = polyline_triples(control)
         target = second_differences(start, triples) * float(self.keep_shape)
         terms = [
-            Term("star planarity", Weight(1.0), regular_stars(stars), goal=True),
-            Term("other stars", Weight(1.0), other_stars(stars), goal=True),
+            *_planar_terms(control, self.planarity),
+            *_angle_terms(pose, self.planarity, self.angle, lag_lengths=False),
             Term("fairness", self.fairness, Fairness(triples, target)),
         ]
-        if self.angle is not None:
-            terms.append(_angle_term(control, self.angle, lag_lengths=False))
+        if self.rhombus:
+            goal = EqualDiagonals(control.quads)
+            terms.append(Term("equal diagonals", Weight(1.0), goal, goal=True))
         if self.closeness is not None:
             terms.append(Term("closeness", self.closeness, Closeness(start)))
-        if reference is not None:
-            terms.append(_proximity_term(control, reference, self.proximity))
-        return _problem(start, terms, hold), start
+        terms += [condition.term(pose) for condition in self.conditions]
+        terms += _proximity_terms(pose, self.proximity)
+        return _problem(pose, start, terms, NoFolding(pose.control.mesh)), start
 
 
-@dataclass(frozen=True)
-class PaperANet:
-    """The A-net as the paper solves it: Table 1, row 9.
+@dataclass(frozen=True, eq=False)
+class PaperRecipe:
+    """The formulation as printed: normals as unknowns, constant weights, ten steps (Table 1).
 
     Parameters
     ----------
-    angle : radians; None leaves it free.
+    planarity : ``DIAGONAL_STARS`` (lambda 4 = 1) or ``WHITE_FACES`` (lambda 3 = 1).
+    angle : radians (lambda 1 = 1); None leaves it free.
+    rhombus : lambda 2 = 1.
     fairness : lambda 5, constant.
     proximity : constant weight of the distance to a reference, where there is one.
     stop : ten steps.
+
+    Raises
+    ------
+    SettingError
+        For an angle outside (0, 180) degrees, or a planarity the paper has no equation for.
     """
 
-    angle: float | None = None
+    planarity: Planarity = Planarity.DIAGONAL_STARS
+    angle: Angle | None = None
+    rhombus: bool = False
     fairness: Weight = field(default=Weight(0.1))
     proximity: Weight = field(default=Weight(0.1))
     stop: Stop = field(default=Stop(steps=10, tolerance=1e-9))
 
     def __post_init__(self) -> None:
         _check_angle(self.angle)
+        if self.planarity not in (Planarity.DIAGONAL_STARS, Planarity.WHITE_FACES):
+            raise SettingError(
+                "The paper has no equation for it",
+                where="planarity",
+                value=self.planarity.value,
+                limit="stars of the diagonal meshes (7), white faces (6)",
+            )
 
-    def problem(
-        self, control: ControlMesh, x: Points, hold: Hold, reference: Surface | None
-    ) -> tuple[Problem, Floats]:
-        """Normals follow the vertices in the unknown vector: 6 n unknowns."""
-        n = len(x)
-        normals = vertex_normals(control.mesh)
-        stars = diagonal_stars(control.mesh)
-        centre = stars.regular()
-        points = np.column_stack([centre, stars.spokes[centre, :4], n + centre])
-        triples = _polyline_triples(control)
+    def problem(self, pose: Pose) -> tuple[Problem, Floats]:
+        """Normals follow the vertices in the unknown vector: 6 n unknowns; no step is refused."""
+        control, n = pose.control, len(pose.net.vertices)
+        if self.planarity is Planarity.WHITE_FACES:
+            across = white_quads_across_normals(edge_stars(control.mesh), n)
+            name = "white faces"
+        else:
+            across = stars_across_normals(diagonal_stars(control.mesh), n)
+            name = "star planarity"
+        triples = polyline_triples(control)
         terms = [
-            Term("star planarity", Weight(1.0), StarWithNormal(points), goal=True),
-            Term("unit normals", Weight(1.0), UnitNormal(n + centre)),
+            Term(name, Weight(1.0), across, goal=True),
+            Term("unit normals", Weight(1.0), UnitNormal(across.points[:, -1])),
             Term("fairness", self.fairness, Fairness(triples, np.zeros((len(triples), 3)))),
+            *_angle_terms(pose, self.planarity, self.angle, lag_lengths=True),
+            *_proximity_terms(pose, self.proximity),
         ]
-        if self.angle is not None:
-            terms.append(_angle_term(control, self.angle, lag_lengths=True))
-        if reference is not None:
-            terms.append(_proximity_term(control, reference, self.proximity))
-        start = np.concatenate([x.ravel(), normals.ravel()])
-        return _problem(start, terms, hold), start
+        if self.rhombus:
+            goal = EqualDiagonals(control.quads, as_printed=True)
+            terms.append(Term("equal diagonals", Weight(1.0), goal, goal=True))
+        normals = vertex_normals(control.mesh)
+        start = np.concatenate([control.vertices.ravel(), normals.ravel()])
+        return _problem(pose, start, terms, None), start
+
+
+# ---- the recipes by name ------------------------------------------------------------------------
 
 
 def a_net(
-    *, angle: float | None = None, keep_shape: bool = True, steps: int = 30, tolerance: float = 1e-9
-) -> ANet:
+    *,
+    angle: Angle | None = None,
+    planarity: Planarity = Planarity.DIAGONAL_STARS,
+    keep_shape: bool = True,
+    conditions: tuple[Condition, ...] = (),
+    steps: int = 30,
+    tolerance: float = 1e-9,
+) -> NetRecipe:
     """The default recipe for an asymptotic net.
 
     Parameters
     ----------
     angle : node angle, radians; None leaves it to the surface.
+    planarity : which vertex stars are planar.
     keep_shape : False for a noisy start.
+    conditions : prescribed lengths, planes of symmetry.
     steps, tolerance : when to stop; the tolerance is the largest residual at unit mean edge.
+
+    Raises
+    ------
+    SettingError
+        For a planarity that is not of stars, or an angle outside (0, 180) degrees.
     """
-    closeness = None if keep_shape else Weight(1e-2, 0.1)
-    return ANet(
+    if not planarity.of_stars:
+        raise SettingError(
+            "An asymptotic net has planar vertex stars",
+            where="planarity",
+            value=planarity.value,
+            limit="vertex stars",
+            advice="pq_net() for planar faces",
+        )
+    return _default(planarity, angle, False, keep_shape, conditions, steps, tolerance)
+
+
+def pq_net(
+    *,
+    angle: Angle | None = None,
+    planarity: Planarity = Planarity.WHITE_FACES,
+    rhombus: bool = False,
+    square: bool = False,
+    keep_shape: bool = True,
+    conditions: tuple[Condition, ...] = (),
+    steps: int = 30,
+    tolerance: float = 1e-9,
+) -> NetRecipe:
+    """The default recipe for a net of planar quads.
+
+    Parameters
+    ----------
+    angle : between the diagonals of every quad, radians; None leaves it to the surface.
+    planarity : ``WHITE_FACES`` (eq. 6) or ``FACES``, of the mesh itself.
+    rhombus : the black parallelograms are rhombi (eq. 5).
+    square : they are squares: rhombi at 90 degrees, a discrete isothermic surface.
+    keep_shape : False for a noisy start.
+    conditions : prescribed lengths, planes of symmetry.
+    steps, tolerance : when to stop; the tolerance is the largest residual at unit mean edge.
+
+    Raises
+    ------
+    SettingError
+        For a planarity that is not of faces, an angle outside (0, 180) degrees, or squares at
+        another angle than 90.
+    """
+    if planarity not in (Planarity.WHITE_FACES, Planarity.FACES):
+        raise SettingError(
+            "A planar-quad net has planar faces",
+            where="planarity",
+            value=planarity.value,
+            limit="faces or white faces",
+            advice="a_net() for planar vertex stars",
+        )
+    if square and angle is not None and not (np.ndim(angle) == 0 and angle == pi / 2.0):  # type: ignore[arg-type]
+        raise SettingError(
+            "The conditions contradict each other: squares have right angles",
+            where="angle, square",
+            value="another node angle" if callable(angle) else f"{np.degrees(np.max(angle)):g}",
+            limit="90 degrees",
+            advice="rhombi instead of squares, or no angle",
+        )
+    angle = pi / 2.0 if square else angle
+    return _default(planarity, angle, rhombus or square, keep_shape, conditions, steps, tolerance)
+
+
+def principal_symmetric_net(
+    *, angle: Angle | None = None, keep_shape: bool = True, steps: int = 30, tolerance: float = 1e-9
+) -> NetRecipe:
+    """Spherical vertex stars on D1 and D2: families with equal normal curvatures (the remark).
+
+    Parameters and errors as for :func:`a_net`.
+    """
+    return _default(Planarity.SPHERICAL_STARS, angle, False, keep_shape, (), steps, tolerance)
+
+
+def paper_a_net(*, angle: Angle | None = None, rhombus: bool = False) -> PaperRecipe:
+    """The paper's own setting: lambda 1 = lambda 4 = 1, lambda 5 = 0.1, ten steps."""
+    return PaperRecipe(angle=angle, rhombus=rhombus)
+
+
+def paper_pq_net(
+    *, angle: Angle | None = None, rhombus: bool = False, fairness: float = 0.1
+) -> PaperRecipe:
+    """The paper's own setting: lambda 1 = lambda 3 = 1, ten steps; lambda 5 is *fairness*."""
+    return PaperRecipe(
+        planarity=Planarity.WHITE_FACES, angle=angle, rhombus=rhombus, fairness=Weight(fairness)
+    )
+
+
+def _default(
+    planarity: Planarity,
+    angle: Angle | None,
+    rhombus: bool,
+    keep_shape: bool,
+    conditions: tuple[Condition, ...],
+    steps: int,
+    tolerance: float,
+) -> NetRecipe:
+    return NetRecipe(
+        planarity=planarity,
         angle=angle,
+        rhombus=rhombus,
         keep_shape=keep_shape,
-        closeness=closeness,
+        closeness=None if keep_shape else Weight(1e-2, 0.1),
+        conditions=conditions,
         stop=Stop(steps=steps, tolerance=tolerance),
     )
 
 
-def paper_a_net(*, angle: float | None = None) -> PaperANet:
-    """The paper's own setting: lambda 1 = lambda 4 = 1, lambda 5 = 0.1, ten steps."""
-    return PaperANet(angle=angle)
+# ---- terms --------------------------------------------------------------------------------------
 
 
-def _check_angle(angle: float | None) -> None:
-    if angle is not None and not 0.0 < angle < np.pi:
-        raise SettingError(
-            "The node angle must lie between 0 and 180 degrees",
-            where="angle",
-            value=f"{np.degrees(angle):g} degrees",
-            limit="(0, 180)",
-            advice="60, 75 or 90 degrees",
-        )
+def crossings(control: ControlMesh, planarity: Planarity) -> Indices:
+    """(m, 4) where the node angle of a net is measured."""
+    return edge_crossings(control) if planarity is Planarity.EDGE_STARS else face_crossings(control)
 
 
-def _problem(start: Floats, terms: list[Term], hold: Hold) -> Problem:
-    fixed = (3 * hold.vertices[:, None] + np.arange(3)).ravel()
-    used = [t for t in (*terms, *hold.terms) if len(t.constraint.pattern().columns)]
-    return Problem(len(start), tuple(used), fixed)
+def target_angles(net: ControlMesh, planarity: Planarity, angle: Angle) -> Floats:
+    """(m,) target at every crossing of *net* (mm), radians."""
+    corners = crossings(net, planarity)
+    return angles_at(angle, net.vertices[corners].mean(axis=1))
 
 
-def _angle_term(control: ControlMesh, angle: float, *, lag_lengths: bool) -> Term:
-    angles = np.full(len(control.quads), angle)
-    return Term("node angle", Weight(1.0), NodeAngle(control.quads, angles, lag_lengths), goal=True)
-
-
-def _proximity_term(control: ControlMesh, reference: Surface, weight: Weight) -> Term:
-    used = np.flatnonzero(control.mesh.valence > 0)
-    return Term("proximity", weight, Proximity(used, reference))
-
-
-def _polyline_triples(control: ControlMesh) -> np.ndarray:
-    """Polylines of the control mesh's edges and of both diagonal meshes."""
+def polyline_triples(control: ControlMesh) -> Indices:
+    """(m, 3) along the polylines of the edges and of both diagonal meshes."""
     stars = diagonal_stars(control.mesh), edge_stars(control.mesh)
     return np.concatenate([s.continuations() for s in stars])
+
+
+def _planar_terms(control: ControlMesh, planarity: Planarity) -> list[Term]:
+    def goal(name: str, constraint: Constraint) -> Term:
+        return Term(name, Weight(1.0), constraint, goal=True)
+
+    if planarity is Planarity.FACES:
+        return [goal("planar faces", planar_faces(control.quads))]
+    if planarity is Planarity.WHITE_FACES:
+        return [goal("white faces", planar_white_faces(edge_stars(control.mesh)))]
+    if planarity is Planarity.SPHERICAL_STARS:
+        return [goal("spherical stars", spherical_stars(diagonal_stars(control.mesh)))]
+    stars = planar_stars(control, planarity)
+    return [goal("star planarity", regular_stars(stars)), goal("other stars", other_stars(stars))]
+
+
+def planar_stars(control: ControlMesh, planarity: Planarity) -> Stars:
+    """The stars that shall be planar; the others have no spoke."""
+    if planarity is Planarity.EDGE_STARS:
+        return edge_stars(control.mesh)
+    stars = diagonal_stars(control.mesh)
+    colour = {Planarity.FIRST_DIAGONAL_STARS: 0, Planarity.SECOND_DIAGONAL_STARS: 1}.get(planarity)
+    if colour is None:
+        return stars
+    return Stars(stars.spokes, np.where(control.colour == colour, stars.count, 0), stars.closed)
+
+
+def _angle_terms(
+    pose: Pose, planarity: Planarity, angle: Angle | None, *, lag_lengths: bool
+) -> list[Term]:
+    if angle is None:
+        return []
+    constraint = NodeAngle(
+        crossings(pose.net, planarity), target_angles(pose.net, planarity, angle), lag_lengths
+    )
+    return [Term("node angle", Weight(1.0), constraint, goal=True)]
+
+
+def _proximity_terms(pose: Pose, weight: Weight) -> list[Term]:
+    if pose.reference is None:
+        return []
+    used = np.flatnonzero(pose.net.mesh.valence > 0)
+    return [Term("proximity", weight, Proximity(used, pose.reference))]
+
+
+def _problem(pose: Pose, start: Floats, terms: list[Term], guard: Guard | None) -> Problem:
+    fixed = (3 * pose.hold.vertices[:, None] + np.arange(3)).ravel()
+    used = [t for t in (*terms, *pose.hold.terms) if len(t.constraint.pattern().columns)]
+    return Problem(len(start), tuple(used), fixed, guard)
+
+
+def _check_angle(angle: Angle | None) -> None:
+    if angle is not None and not callable(angle):
+        values = np.atleast_1d(np.asarray(angle, dtype=np.float64))
+        angles_at(angle if np.ndim(angle) else float(values[0]), np.zeros((len(values), 3)))

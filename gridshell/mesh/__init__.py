@@ -2,7 +2,12 @@
 
 from gridshell.mesh.checkerboard import CheckerboardPattern, checkerboard
 from gridshell.mesh.coloring import corner_parity, two_colouring
-from gridshell.mesh.control_mesh import ControlMesh, as_control_mesh, control_mesh
+from gridshell.mesh.control_mesh import (
+    ControlMesh,
+    as_control_mesh,
+    control_mesh,
+    without_families,
+)
 from gridshell.mesh.diagonals import DiagonalMesh, diagonal_meshes
 from gridshell.mesh.grid import grid_quads
 from gridshell.mesh.polylines import Polyline, polylines
@@ -28,4 +33,5 @@ __all__ = [
     "polylines",
     "position",
     "two_colouring",
+    "without_families",
 ]

@@ -24,7 +24,8 @@ class ControlMesh:
     ----------
     mesh : corners 0 and 2 of every quad are joined by the diagonal of family 1, corners 1 and 3
         by that of family 2.
-    colour : (n,) 0 for the vertices of D1, 1 for those of D2, -1 for an unused vertex.
+    colour : (n,) 0 for the vertices of D1, 1 for those of D2, -1 for an unused vertex, or for all
+        where the families are not known (:func:`without_families`).
     """
 
     mesh: QuadMesh
@@ -72,6 +73,15 @@ def as_control_mesh(mesh: QuadMesh) -> ControlMesh:
     if np.count_nonzero(loose & (colour == 0)) > np.count_nonzero(loose & (colour == 1)):
         colour = np.where(colour < 0, -1, 1 - colour)
     return ControlMesh(rolled, colour)
+
+
+def without_families(mesh: QuadMesh) -> ControlMesh:
+    """Take *mesh* as it is, its families unknown: enough for planar faces or stars of its edges.
+
+    The way in for meshes with singularities of odd valence. Nothing that needs an angle, D1 or D2
+    can be asked of it.
+    """
+    return ControlMesh(mesh, np.full(len(mesh.vertices), -1, dtype=np.int64))
 
 
 def control_mesh(mesh: QuadMesh) -> ControlMesh:

@@ -2,21 +2,27 @@
 
 from gridshell.solve.constraint import Constraint, Evaluation, Pattern
 from gridshell.solve.levenberg_marquardt import Progress, Stop, solve
-from gridshell.solve.problem import Problem, Term, Weight
-from gridshell.solve.solution import Solution, Step
+from gridshell.solve.linear import Engine
+from gridshell.solve.problem import Guard, Problem, Term, Weight
+from gridshell.solve.solution import End, Solution, State, Step, history
 from gridshell.solve.unknowns import columns_of
 
 __all__ = [
     "Constraint",
+    "End",
+    "Engine",
     "Evaluation",
+    "Guard",
     "Pattern",
     "Problem",
     "Progress",
     "Solution",
+    "State",
     "Step",
     "Stop",
     "Term",
     "Weight",
     "columns_of",
+    "history",
     "solve",
 ]

@@ -2,13 +2,16 @@
 
 The pattern of JtJ is found once. Each step scatters the element matrices into it and refactors:
 PARDISO where it is installed (its analysis is kept), SciPy's SuperLU elsewhere; same results.
+:class:`Engine` says which, with how many threads, and whether reruns must agree to the last bit.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -17,11 +20,40 @@ from scipy.sparse import csc_matrix, csr_matrix, triu
 from scipy.sparse.linalg import splu
 
 from gridshell.arrays import Floats, Indices
-from gridshell.errors import SolveError
+from gridshell.errors import SettingError, SolveError
 from gridshell.solve.constraint import Evaluation, Pattern
+from gridshell.solve.dissection import dissection_order
 
 _ONE_THREAD_BELOW = 20_000
 """Unknowns below which a second thread costs more than it gives."""
+
+_MIB = 2.0**20
+
+
+@dataclass(frozen=True)
+class Engine:
+    """Which program factors the linear systems, and how.
+
+    Parameters
+    ----------
+    portable : use SciPy alone even where PARDISO is installed.
+    threads : for PARDISO; None takes one for small systems and all cores for large ones.
+    repeatable : reruns on one machine agree to the last bit, with whatever number of threads; a
+        little slower. SciPy's solver always does.
+
+    Raises
+    ------
+    SettingError
+        For fewer than one thread.
+    """
+
+    portable: bool = False
+    threads: int | None = None
+    repeatable: bool = True
+
+    def __post_init__(self) -> None:
+        if self.threads is not None and self.threads < 1:
+            raise SettingError("At least one thread is needed", where="threads", limit=">= 1")
 
 
 class NormalEquations:
@@ -106,15 +138,20 @@ class Factorisation(Protocol):
     def solve(self, data: Floats, right: Floats) -> Floats:
         """Factor the matrix with entries *data* and solve for *right*."""
 
+    @property
+    def memory(self) -> float:
+        """Largest memory of a factorisation so far, MiB."""
+
     def close(self) -> None:
         """Give back the memory."""
 
 
-def factorisation(equations: NormalEquations, *, portable: bool = False) -> Factorisation:
-    """PARDISO where it is installed, SuperLU elsewhere or when *portable* is asked for."""
-    if not portable and len(equations.free):
+def factorisation(equations: NormalEquations, engine: Engine | None = None) -> Factorisation:
+    """PARDISO where it is installed, SuperLU elsewhere or when the engine is to be portable."""
+    engine = engine or Engine()
+    if not engine.portable and len(equations.free):
         try:
-            return _Pardiso(equations)
+            return _Pardiso(equations, engine)
         except ImportError:
             pass
     return _SuperLU(equations)
@@ -123,12 +160,16 @@ def factorisation(equations: NormalEquations, *, portable: bool = False) -> Fact
 class _Pardiso:
     """MKL PARDISO, symmetric positive definite, analysis kept between factorisations."""
 
-    def __init__(self, equations: NormalEquations) -> None:
+    def __init__(self, equations: NormalEquations, engine: Engine) -> None:
         _point_to_mkl()
         from pypardiso import PyPardisoSolver
 
         self._solver = PyPardisoSolver(mtype=2)
         n = len(equations.free)
+        threads = engine.threads or (1 if n < _ONE_THREAD_BELOW else os.cpu_count() or 1)
+        self._threads = threads
+        for place, value in _pardiso_settings(threads if engine.repeatable else 0).items():
+            self._solver.set_iparm(place, value)
         self._matrix = csr_matrix(
             (np.ones(equations.nonzeros), equations.indices, equations.indptr), shape=(n, n)
         )
@@ -140,22 +181,44 @@ class _Pardiso:
         self._matrix.data[:] = data
         phases = (22, 33) if self._analysed else (11, 22, 33)
         result = right
-        library = self._solver.libmkl
-        before = library.MKL_Set_Num_Threads_Local(1) if len(right) < _ONE_THREAD_BELOW else None
         try:
-            for phase in phases:
-                self._solver.set_phase(phase)
-                result = self._solver._call_pardiso(self._matrix, right)
+            with self._limited():
+                for phase in phases:
+                    self._solver.set_phase(phase)
+                    result = self._solver._call_pardiso(self._matrix, right)
+                    self._analysed = True
         except PyPardisoError as error:
             raise SolveError("The linear system could not be factored", value=str(error)) from error
-        finally:
-            if before is not None:
-                library.MKL_Set_Num_Threads_Local(before)
-        self._analysed = True
         return np.asarray(result)
+
+    @contextmanager
+    def _limited(self) -> Iterator[None]:
+        """The library's threads in this Python thread, put back afterwards."""
+        library = self._solver.libmkl
+        before = library.MKL_Set_Num_Threads_Local(self._threads)
+        try:
+            yield
+        finally:
+            library.MKL_Set_Num_Threads_Local(before)
+
+    @property
+    def memory(self) -> float:
+        analysis, kept, factor = self._solver.iparm[14:17].tolist()
+        return float(max(analysis, kept + factor)) * 1024.0 / _MIB
 
     def close(self) -> None:
         self._solver.free_memory(everything=True)
+
+
+def _pardiso_settings(repeatable_threads: int) -> dict[int, int]:
+    """Parameters by their number in MKL's manual (from one), zero-based column indices."""
+    return {
+        1: 1,  # none of the others is a default
+        2: 2,  # nested dissection; the parallel one is not repeatable
+        18: -1,  # report the size of the factor
+        34: repeatable_threads,
+        35: 0,
+    }
 
 
 def _point_to_mkl() -> None:
@@ -168,27 +231,55 @@ def _point_to_mkl() -> None:
 
 
 class _SuperLU:
-    """SciPy's SuperLU in symmetric mode on the full matrix."""
+    """SciPy's SuperLU in symmetric mode on the full matrix, in an order of nested dissection."""
 
     def __init__(self, equations: NormalEquations) -> None:
         n = len(equations.free)
         order = np.arange(equations.nonzeros, dtype=np.float64)
         upper = csr_matrix((order + 1.0, equations.indices, equations.indptr), shape=(n, n))
-        self._full = csc_matrix(upper + triu(upper, k=1).T)
+        full = csr_matrix(upper + triu(upper, k=1).T)
+        self._order = _elimination_order(full, equations.free // 3)
+        self._full = csc_matrix(full[self._order][:, self._order])
         self._source = self._full.data.astype(np.int64) - 1
+        self._memory = 0.0
 
     def solve(self, data: Floats, right: Floats) -> Floats:
         self._full.data = data[self._source]
         try:
             factor = splu(
                 self._full,
-                permc_spec="MMD_AT_PLUS_A",
+                permc_spec="NATURAL",
                 diag_pivot_thresh=0.0,
                 options={"SymmetricMode": True},
             )
         except RuntimeError as error:
             raise SolveError("The linear system could not be factored", value=str(error)) from error
-        return np.asarray(factor.solve(right))
+        self._memory = max(self._memory, factor.nnz * 12.0 / _MIB)
+        result = np.empty_like(right)
+        result[self._order] = factor.solve(right[self._order])
+        return result
+
+    @property
+    def memory(self) -> float:
+        return self._memory
 
     def close(self) -> None:
         """SuperLU keeps nothing."""
+
+
+def _elimination_order(matrix: csr_matrix, points: Indices) -> Indices:
+    """An order of the unknowns that keeps the coordinates of a point together.
+
+    Parameters
+    ----------
+    matrix : (n, n), symmetric.
+    points : (n,) the point each unknown belongs to, rising.
+    """
+    _, block = np.unique(points, return_inverse=True)
+    rows = np.repeat(block, np.diff(matrix.indptr))
+    size = int(block.max(initial=-1)) + 1
+    ones = np.ones(matrix.nnz, dtype=np.int8)
+    graph = csr_matrix((ones, (rows, block[matrix.indices])), shape=(size, size))
+    rank = np.empty(size, dtype=np.int64)
+    rank[dissection_order(graph)] = np.arange(size)
+    return np.argsort(rank[block], kind="stable")

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from gridshell.arrays import Indices
+from gridshell.arrays import Floats, Indices
 from gridshell.errors import SettingError
 from gridshell.solve.constraint import Constraint
 
@@ -65,6 +66,13 @@ class Term:
     goal: bool = False
 
 
+class Guard(Protocol):
+    """What no step may break, whatever the energy says."""
+
+    def broken(self, x: Floats) -> Indices:
+        """Elements (quads) that *x* (size,) breaks; empty when it is admissible."""
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """All terms over one unknown vector.
@@ -74,8 +82,10 @@ class Problem:
     size : number of unknowns.
     terms : at least one.
     fixed : (k,) unknowns that keep their value.
+    guard : refuses steps; None lets every step pass that lowers the energy.
     """
 
     size: int
     terms: tuple[Term, ...]
     fixed: Indices
+    guard: Guard | None = None

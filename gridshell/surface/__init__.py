@@ -11,6 +11,7 @@ from gridshell.surface.analytic_revolution import (
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.surface import Foot, Surface, checked_points
+from gridshell.surface.triangulated import TriangulatedSurface
 
 __all__ = [
     "AnalyticSurface",
@@ -27,5 +28,6 @@ __all__ = [
     "Sphere",
     "Surface",
     "Torus",
+    "TriangulatedSurface",
     "checked_points",
 ]

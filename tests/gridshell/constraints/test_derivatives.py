@@ -9,17 +9,25 @@ import pytest
 import gridshell as gs
 from gridshell import constraints
 from gridshell.constraints import (
+    AcrossNormal,
     Closeness,
     Coplanarity,
+    EdgeLength,
+    EqualDiagonals,
     Fairness,
     Glide,
     NodeAngle,
     Proximity,
-    StarWithNormal,
+    Symmetry,
     UnitNormal,
     other_stars,
+    planar_faces,
+    planar_white_faces,
     regular_stars,
     smooth_curve,
+    spherical_stars,
+    stars_across_normals,
+    white_quads_across_normals,
 )
 
 RNG = np.random.default_rng(20)
@@ -27,6 +35,8 @@ SOME = np.array([0, 3, 11, 4])
 ANGLE, START, TARGET = RNG.uniform(0.5, 2.5, 24), RNG.normal(size=30), RNG.normal(size=(12, 3))
 ARC = np.column_stack([np.cos(np.arange(5.0)), np.sin(np.arange(5.0)), np.arange(5.0)])
 SPAN = RNG.normal(size=(4, 6))
+LENGTHS = RNG.uniform(0.5, 2.0, 100)
+PAIRS = np.array([[0, 3], [11, 4], [5, 5]])
 """Coefficients p, q and two rows w over six points."""
 
 
@@ -41,7 +51,16 @@ CONSTRAINTS = {
     "planar stars of four edges": lambda m: regular_stars(gs.edge_stars(m)),
     "other planar stars of diagonals": lambda m: other_stars(gs.diagonal_stars(m)),
     "other planar stars of edges": lambda m: other_stars(gs.edge_stars(m)),
-    "planar stars with a normal": lambda m: StarWithNormal(in_order(m, 6)),
+    "vectors across a normal": lambda m: AcrossNormal(in_order(m, 6), SPAN[:, :5]),
+    "planar stars, eq. 7 as printed": lambda m: stars_across_normals(gs.diagonal_stars(m), 0),
+    "white quads, eq. 6 as printed": lambda m: white_quads_across_normals(gs.edge_stars(m), 0),
+    "planar faces": lambda m: planar_faces(m.quads),
+    "planar white faces": lambda m: planar_white_faces(gs.edge_stars(m)),
+    "spherical stars": lambda m: spherical_stars(gs.diagonal_stars(m)),
+    "equal diagonals": lambda m: EqualDiagonals(m.quads),
+    "equal diagonals as printed": lambda m: EqualDiagonals(m.quads, as_printed=True),
+    "edge lengths": lambda m: EdgeLength(m.edges, LENGTHS[: len(m.edges)]),
+    "symmetry": lambda m: Symmetry(PAIRS, np.array([0.3, -0.2, 1.0]), np.array([0.6, 0.0, 0.8])),
     "coplanarity of six points": lambda m: Coplanarity(in_order(m, 6), *SPAN[:2], SPAN[2:]),
     "unit normals": lambda m: UnitNormal(SOME),
     "fairness": lambda m: Fairness(in_order(m, 3), TARGET),

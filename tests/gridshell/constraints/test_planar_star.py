@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import gridshell as gs
-from gridshell.constraints import StarWithNormal, other_stars, regular_stars
+from gridshell.constraints import other_stars, regular_stars
 
 
 def residual(constraint, vertices):
@@ -119,18 +119,3 @@ def test_alternating_spokes_of_a_regular_star_are_their_height_from_the_plane():
     vertices = star(turn(4, True), [0.25, -0.25, 0.25, -0.25])
     found = residual(regular_stars(stars_of(4, True)), vertices)
     np.testing.assert_allclose(np.abs(found), [[0.25, 0.25]], atol=1e-15)
-
-
-# ---- the paper's own formulation ------------------------------------------------------------
-
-
-def test_with_the_right_normal_a_planar_star_has_no_residual():
-    vertices = np.vstack([tilted(star(turn(4, True), np.zeros(4))), [0.48, -0.64, 0.6]])
-    constraint = StarWithNormal(np.arange(6)[None])
-    assert np.abs(residual(constraint, vertices)).max() < 1e-14
-
-
-def test_with_a_normal_the_rows_are_the_heights_of_the_spokes():
-    vertices = np.vstack([star(turn(4, True), [0.1, 0.2, -0.3, 0.4]), [0.0, 0.0, 1.0]])
-    found = residual(StarWithNormal(np.arange(6)[None]), vertices)
-    np.testing.assert_allclose(found, [[0.1, 0.2, -0.3, 0.4]], atol=1e-15)

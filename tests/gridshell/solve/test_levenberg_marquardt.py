@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gridshell as gs
-from gridshell.solve import Evaluation, Pattern, Problem, Stop, Term, Weight, solve
+from gridshell.solve import Engine, Evaluation, Pattern, Problem, Stop, Term, Weight, solve
 
 NOTHING = np.empty(0, dtype=np.int64)
 FIT = np.array([[1.0, 0.0], [1.0, 1.0], [1.0, 2.0]]), np.array([1.0, 2.0, 2.0])
@@ -65,7 +65,9 @@ LOGARITHM = Rows(1, 1, logarithm)
 @pytest.mark.parametrize("portable", [False, True])
 def test_a_consistent_linear_problem_is_solved_to_rounding_in_two_steps(portable):
     a, b = 2.0 * np.eye(3) + 1.0, np.array([1.0, 2.0, 3.0])
-    found = solve(problem(linear(a, b)), np.zeros(3), Stop(tolerance=1e-12, portable=portable))
+    found = solve(
+        problem(linear(a, b)), np.zeros(3), Stop(tolerance=1e-12, engine=Engine(portable=portable))
+    )
     assert found.converged
     assert len(found.steps) <= 2
     np.testing.assert_allclose(found.x, np.linalg.solve(a, b), rtol=1e-12)
@@ -73,7 +75,9 @@ def test_a_consistent_linear_problem_is_solved_to_rounding_in_two_steps(portable
 
 @pytest.mark.parametrize("portable", [False, True])
 def test_two_steps_reach_the_least_squares_solution_to_rounding(portable):
-    found = solve(problem(linear(*FIT)), np.zeros(2), Stop(steps=2, portable=portable))
+    found = solve(
+        problem(linear(*FIT)), np.zeros(2), Stop(steps=2, engine=Engine(portable=portable))
+    )
     np.testing.assert_allclose(found.x, np.linalg.lstsq(*FIT, rcond=None)[0], rtol=1e-12)
 
 
@@ -113,7 +117,9 @@ def test_fixed_unknowns_keep_their_bits_and_the_others_do_the_best_they_can():
 @pytest.mark.parametrize("portable", [False, True])
 def test_with_every_unknown_fixed_nothing_moves(portable):
     start = np.array([0.1, 0.2])
-    found = solve(problem(linear(*FIT), fixed=[0, 1]), start, Stop(steps=2, portable=portable))
+    found = solve(
+        problem(linear(*FIT), fixed=[0, 1]), start, Stop(steps=2, engine=Engine(portable=portable))
+    )
     np.testing.assert_array_equal(found.x, start)
     assert not found.converged
 
@@ -135,7 +141,9 @@ def test_the_start_is_not_changed():
 
 @pytest.mark.parametrize("portable", [False, True])
 def test_the_rosenbrock_valley_is_followed_to_its_end(portable):
-    found = solve(problem(ROSENBROCK), np.array([-1.2, 1.0]), Stop(steps=60, portable=portable))
+    found = solve(
+        problem(ROSENBROCK), np.array([-1.2, 1.0]), Stop(steps=60, engine=Engine(portable=portable))
+    )
     assert found.converged
     np.testing.assert_allclose(found.x, [1.0, 1.0], atol=1e-8)
 
@@ -294,7 +302,7 @@ def test_a_singular_system_raises_a_solve_error(portable):
     blind = Problem(
         3, (Term("goal", Weight(1.0), linear([[1.0, 0.0]], [1.0]), goal=True),), NOTHING
     )
-    undamped = Stop(damping=0.0, damping_floor=0.0, portable=portable)
+    undamped = Stop(damping=0.0, damping_floor=0.0, engine=Engine(portable=portable))
     with pytest.raises(gs.SolveError, match="could not be factored") as info:
         solve(blind, np.zeros(3), undamped)
     assert info.value.__cause__ is not None
@@ -323,7 +331,7 @@ def test_pardiso_and_the_portable_solver_agree_on_a_net(enneper):
     nets = [
         gs.optimize(
             control,
-            gs.ANet(angle=np.radians(75.0), stop=Stop(portable=portable)),
+            gs.NetRecipe(angle=np.radians(75.0), stop=Stop(engine=Engine(portable=portable))),
             anchor=gs.Free(),
         )
         for portable in (False, True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gridshell as gs
-from gridshell.solve import Evaluation, Pattern
+from gridshell.solve import Engine, Evaluation, Pattern
 from gridshell.solve.linear import NormalEquations, factorisation
 
 SIZE, FIXED, WEIGHTS = 12, np.array([2, 7]), [1.0, 0.25]
@@ -110,7 +110,7 @@ def test_expanding_a_step_puts_zero_at_fixed_unknowns(elements):
 @pytest.fixture(params=["fastest", "portable"])
 def solver(request, elements):
     equations = NormalEquations(SIZE, elements[0], FIXED)
-    found = factorisation(equations, portable=request.param == "portable")
+    found = factorisation(equations, Engine(portable=request.param == "portable"))
     yield equations, found
     found.close()
 
@@ -141,7 +141,7 @@ def test_a_matrix_that_cannot_be_factored_raises_a_solve_error(solver):
 def test_without_pardiso_the_portable_solver_steps_in(monkeypatch, elements, truth):
     monkeypatch.setitem(sys.modules, "pypardiso", None)
     equations = NormalEquations(SIZE, elements[0], FIXED)
-    portable = factorisation(equations, portable=True)
+    portable = factorisation(equations, Engine(portable=True))
     fallen_back = factorisation(equations)
     assert type(fallen_back) is type(portable)
 
@@ -149,6 +149,6 @@ def test_without_pardiso_the_portable_solver_steps_in(monkeypatch, elements, tru
 def test_pardiso_is_used_where_it_is_installed(elements):
     pytest.importorskip("pypardiso")
     equations = NormalEquations(SIZE, elements[0], FIXED)
-    fastest, portable = factorisation(equations), factorisation(equations, portable=True)
+    fastest, portable = factorisation(equations), factorisation(equations, Engine(portable=True))
     assert type(fastest) is not type(portable)
     fastest.close()

@@ -1,0 +1,45 @@
+"""Design surfaces from mesh files, in a unit that is always stated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gridshell.errors import FileError
+from gridshell.io.obj import Unit
+from gridshell.surface import TriangulatedSurface
+
+
+def read_surface(path: Path | str, *, unit: Unit) -> TriangulatedSurface:
+    """Read a mesh (OBJ, PLY, STL, GLB) as a surface; faces of more corners are cut to triangles.
+
+    Parameters
+    ----------
+    unit : the file's unit; the surface comes back in mm.
+
+    Raises
+    ------
+    FileError
+        When the file is missing or cannot be read.
+    SurfaceError
+        When its triangles do not make a surface.
+    """
+    import trimesh
+
+    if not Path(path).is_file():
+        raise FileError("The surface file is missing", where=str(path), advice="check the path")
+    try:
+        loaded: Any = trimesh.load_mesh(str(path), process=False)
+        vertices = np.asarray(loaded.vertices, dtype=np.float64)
+        faces = np.asarray(loaded.faces, dtype=np.int64)
+    except (ValueError, TypeError, AttributeError, IndexError, KeyError, OSError) as error:
+        raise FileError(
+            "The surface file cannot be read",
+            where=str(path),
+            value=str(error) or type(error).__name__,
+            limit="OBJ, PLY, STL or GLB with faces",
+        ) from None
+    used, compact = np.unique(faces, return_inverse=True)
+    return TriangulatedSurface(vertices[used] * unit.value, compact.reshape(-1, 3))
