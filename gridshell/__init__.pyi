@@ -15,6 +15,7 @@ from .anchors import (
 from .anchors import (
     Pinned as Pinned,
 )
+from .angles import Angle as Angle
 from .angles import RadialAngle as RadialAngle
 from .conditions import EdgeLengths as EdgeLengths
 from .conditions import MirrorPlane as MirrorPlane
@@ -69,6 +70,7 @@ from .io import (
 from .io import (
     read_obj as read_obj,
 )
+from .io import read_state as read_state
 from .io import read_surface as read_surface
 from .io import (
     write_net as write_net,
@@ -76,6 +78,7 @@ from .io import (
 from .io import (
     write_obj as write_obj,
 )
+from .io import write_state as write_state
 from .mesh import (
     CheckerboardPattern as CheckerboardPattern,
 )

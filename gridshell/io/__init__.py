@@ -2,6 +2,16 @@
 
 from gridshell.io.net_json import read_net, write_net
 from gridshell.io.obj import Unit, read_obj, write_obj
+from gridshell.io.state_file import read_state, write_state
 from gridshell.io.surface_file import read_surface
 
-__all__ = ["Unit", "read_net", "read_obj", "read_surface", "write_net", "write_obj"]
+__all__ = [
+    "Unit",
+    "read_net",
+    "read_obj",
+    "read_state",
+    "read_surface",
+    "write_net",
+    "write_obj",
+    "write_state",
+]

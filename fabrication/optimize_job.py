@@ -1,0 +1,192 @@
+"""From a mesh file to the exact net as a mesh file, with its report: the work of ``optimize``."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import gridshell as gs
+from fabrication.errors import OutputError
+
+_QUADS_AT_FULL_ACCURACY = 10_000
+"""Above it the default tolerance grows with the number of quads, as rounding does."""
+
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class OptimizeJob:
+    """What ``gridshell optimize`` was asked for; angles in radians.
+
+    Parameters
+    ----------
+    mesh, unit : the input file and the unit of both mesh files.
+    planarity : what shall be flat.
+    angle : None leaves it free; two angles make a field from the centre to the outermost quad.
+    rhombus, square : equal diagonals; at right angles.
+    reference : surface file in the same unit.
+    project : an almost exact net moves as little as it can. False finds a new form.
+    anchor : what holds the shape.
+    steps, tolerance : when to stop; None adapts the tolerance to the size of the mesh.
+    engine : the linear solver.
+    paper : the paper's own formulation in place of the default.
+    resume : state file of an earlier run.
+    """
+
+    mesh: Path
+    unit: gs.Unit
+    planarity: gs.Planarity
+    angle: tuple[float, ...] = ()
+    rhombus: bool = False
+    square: bool = False
+    reference: Path | None = None
+    project: bool = True
+    anchor: gs.Anchor = gs.Free()  # noqa: RUF009 - a frozen value
+    steps: int = 60
+    tolerance: float | None = None
+    engine: gs.Engine = gs.Engine()  # noqa: RUF009 - a frozen value
+    paper: bool = False
+    resume: Path | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class OptimizeResult:
+    """The net and the content of its report."""
+
+    net: gs.OptimizedNet
+    report: dict[str, Any]
+
+
+def optimize_job(job: OptimizeJob, progress: gs.Progress | None = None) -> OptimizeResult:
+    """Read, optimise and measure; nothing is written.
+
+    A net that cannot be reached by straightening its lines (mode project) is tried once more with
+    the fairness of its change, and the better one is kept.
+
+    Raises
+    ------
+    InputError
+        For files that cannot be used, meshes that are torn or folded, and contradictory settings.
+    """
+    start = time.perf_counter()
+    control = _read(job)
+    read = time.perf_counter()
+    recipe = _recipe(job, control)
+    surface = None if job.reference is None else gs.read_surface(job.reference, unit=job.unit)
+    state = None if job.resume is None else gs.read_state(job.resume)
+
+    def attempt(made: gs.Recipe) -> gs.OptimizedNet:
+        return gs.optimize(
+            control,
+            made,
+            anchor=job.anchor,
+            reference=surface,
+            progress=progress,
+            resume=state,
+        )
+
+    net, way = attempt(recipe), "as asked"
+    if _hopeless(net) and isinstance(recipe, gs.NetRecipe) and job.project and state is None:
+        other = attempt(_second_way(recipe))
+        if other.converged:
+            net, way = other, "keeping the shape of the lines, as straightening them failed"
+    end = time.perf_counter()
+    content = gs.net_report(net, job.planarity, seconds=end - read)
+    report = {
+        "net": {**content, "way": way},
+        "history": gs.history_report(net),
+        "timing": {"read": round(read - start, 3), "optimise": round(end - read, 3)},
+    }
+    return OptimizeResult(net, report)
+
+
+def write_result(result: OptimizeResult, job: OptimizeJob, out: Path, report: Path | None) -> None:
+    """Write the mesh in its own unit and the report, each whole or not at all.
+
+    Raises
+    ------
+    OutputError
+        When a file cannot be written.
+    """
+    mesh = result.net.control.mesh
+    _whole(out, lambda path: gs.write_obj(path, mesh, unit=job.unit))
+    if report is not None:
+        text = json.dumps(result.report, indent=2, allow_nan=False) + "\n"
+        _whole(report, lambda path: _write_text(path, text))
+
+
+def _read(job: OptimizeJob) -> gs.ControlMesh:
+    mesh = gs.read_obj(job.mesh, unit=job.unit)
+    own = job.planarity in (gs.Planarity.EDGE_STARS, gs.Planarity.FACES)
+    if own and not job.angle and not job.rhombus and not job.square:
+        return gs.without_families(mesh)
+    return gs.as_control_mesh(mesh)
+
+
+def _recipe(job: OptimizeJob, control: gs.ControlMesh) -> gs.Recipe:
+    angle = _angle(job, control)
+    if job.paper:
+        return gs.PaperRecipe(planarity=job.planarity, angle=angle, rhombus=job.rhombus)
+    size = max(1.0, len(control.quads) / _QUADS_AT_FULL_ACCURACY)
+    stop = gs.Stop(job.steps, job.tolerance or _TOLERANCE * size, engine=job.engine)
+    keep = not job.project
+    if job.planarity.of_stars:
+        recipe = gs.a_net(angle=angle, planarity=job.planarity, keep_shape=keep)
+        recipe = replace(recipe, rhombus=job.rhombus or job.square)
+    elif job.planarity is gs.Planarity.SPHERICAL_STARS:
+        recipe = gs.principal_symmetric_net(angle=angle, keep_shape=keep)
+    else:
+        recipe = gs.pq_net(
+            angle=angle,
+            planarity=job.planarity,
+            rhombus=job.rhombus,
+            square=job.square,
+            keep_shape=keep,
+        )
+    return replace(recipe, stop=stop)
+
+
+def _angle(job: OptimizeJob, control: gs.ControlMesh) -> gs.Angle | None:
+    if len(job.angle) < 2:
+        return job.angle[0] if job.angle else None
+    centres = control.vertices[control.quads].mean(axis=1)
+    centre = centres.mean(axis=0)
+    reach = float(np.linalg.norm(centres - centre, axis=1).max())
+    x, y, z = centre.tolist()
+    return gs.RadialAngle((x, y, z), (0.0, reach), (job.angle[0], job.angle[1]))
+
+
+def _hopeless(net: gs.OptimizedNet) -> bool:
+    return not net.converged and net.end is not gs.End.INTERRUPTED
+
+
+def _second_way(recipe: gs.NetRecipe) -> gs.NetRecipe:
+    fairness, closeness = gs.Weight(0.1, 0.3), gs.Weight(1e-2, 0.1)
+    return replace(recipe, keep_shape=True, fairness=fairness, closeness=closeness)
+
+
+def _whole(path: Path, write: Callable[[Path], None]) -> None:
+    """Have a file written beside *path* and move it there."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        write(draft)
+        draft.replace(path)
+    except (gs.FileError, OSError) as error:
+        draft.unlink(missing_ok=True)
+        raise OutputError(
+            "The file cannot be written",
+            where=str(path),
+            value=getattr(error, "value", None) or getattr(error, "strerror", None),
+            advice="a folder that exists and may be written",
+        ) from None
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
