@@ -67,8 +67,9 @@ class OptimizeResult:
 def optimize_job(job: OptimizeJob, progress: gs.Progress | None = None) -> OptimizeResult:
     """Read, optimise and measure; nothing is written.
 
-    A net that cannot be reached by straightening its lines (mode project) is tried once more with
-    the fairness of its change, and the better one is kept.
+    A new form is found by way of coarser nets where the mesh has them. An almost exact net that
+    cannot be reached by straightening its lines is tried once more with the fairness of its change,
+    which is kept when it converges.
 
     Raises
     ------
@@ -83,13 +84,16 @@ def optimize_job(job: OptimizeJob, progress: gs.Progress | None = None) -> Optim
     state = None if job.resume is None else gs.read_state(job.resume)
 
     def attempt(made: gs.Recipe) -> gs.OptimizedNet:
+        if isinstance(made, gs.NetRecipe) and not job.project and state is None:
+            return gs.optimize_coarse_to_fine(
+                control,
+                made,
+                anchor=job.anchor,
+                reference=surface,
+                progress=progress and (lambda _, number, step: progress(number, step)),
+            )
         return gs.optimize(
-            control,
-            made,
-            anchor=job.anchor,
-            reference=surface,
-            progress=progress,
-            resume=state,
+            control, made, anchor=job.anchor, reference=surface, progress=progress, resume=state
         )
 
     net, way = attempt(recipe), "as asked"

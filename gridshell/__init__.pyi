@@ -17,6 +17,9 @@ from .anchors import (
 )
 from .angles import Angle as Angle
 from .angles import RadialAngle as RadialAngle
+from .coarse_to_fine import coarser as coarser
+from .coarse_to_fine import finer as finer
+from .coarse_to_fine import optimize_coarse_to_fine as optimize_coarse_to_fine
 from .conditions import EdgeLengths as EdgeLengths
 from .conditions import MirrorPlane as MirrorPlane
 from .curvature import (

@@ -39,10 +39,17 @@ class Anchor(Protocol):
     def hold(self, control: ControlMesh, x: Points) -> Hold:
         """What is held, for vertex positions *x* (n, 3) at unit mean edge."""
 
+    def restricted(self, vertices: Indices) -> Anchor:
+        """The anchor of a coarser mesh that keeps *vertices* (k,), in their new order."""
+
 
 @dataclass(frozen=True)
 class Free:
     """Nothing is held but the fairness of the change: form-finding with a free boundary."""
+
+    def restricted(self, vertices: Indices) -> Free:
+        """Itself: it names no vertex."""
+        return self
 
     def hold(self, control: ControlMesh, x: Points) -> Hold:
         """No vertex, no term."""
@@ -60,6 +67,10 @@ class Pinned:
 
     vertices: tuple[int, ...]
 
+    def restricted(self, vertices: Indices) -> Pinned:
+        """The pins among *vertices*."""
+        return Pinned(tuple(np.flatnonzero(np.isin(vertices, self.vertices)).tolist()))
+
     def hold(self, control: ControlMesh, x: Points) -> Hold:
         """The named vertices.
 
@@ -68,6 +79,11 @@ class Pinned:
         SettingError
             For an index outside the mesh.
         """
+        twice = [v for k, v in enumerate(self.vertices) if v in self.vertices[:k]]
+        if twice:
+            raise SettingError(
+                "A vertex is pinned twice", where=f"vertices, vertex {twice[0]}", limit="once"
+            )
         wrong = [v for v in self.vertices if not 0 <= v < len(x)]
         if wrong:
             raise SettingError(
@@ -83,6 +99,10 @@ class Pinned:
 class BoundaryPinned:
     """The net's boundary vertices stay where they are."""
 
+    def restricted(self, vertices: Indices) -> BoundaryPinned:
+        """Itself: it names no vertex."""
+        return self
+
     def hold(self, control: ControlMesh, x: Points) -> Hold:
         """The vertices of all boundary runs."""
         runs = [run.vertices for run in boundary_runs(control)]
@@ -92,6 +112,10 @@ class BoundaryPinned:
 @dataclass(frozen=True)
 class BoundaryGlide:
     """Boundary vertices move along the boundary's own curves; corners stay."""
+
+    def restricted(self, vertices: Indices) -> BoundaryGlide:
+        """Itself: it names no vertex."""
+        return self
 
     def hold(self, control: ControlMesh, x: Points) -> Hold:
         """Corners, and one gliding term per run of the boundary."""

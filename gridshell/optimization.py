@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gridshell.anchors import Anchor
+from gridshell.arrays import Points
 from gridshell.errors import SolveError
 from gridshell.mesh import ControlMesh
 from gridshell.pose import pose
 from gridshell.quality import NetQuality, net_quality
-from gridshell.recipes import Recipe
+from gridshell.recipes import Recipe, target_angles
 from gridshell.solve import End, Progress, State, Step, history, solve
 from gridshell.soundness import remarks, require_sound
 from gridshell.surface import Surface
@@ -73,6 +74,7 @@ def optimize(
     anchor: Anchor,
     reference: Surface | None = None,
     progress: Progress | None = None,
+    start: Points | None = None,
     resume: State | None = None,
 ) -> OptimizedNet:
     """Move the vertices of *control* until they meet the recipe.
@@ -88,6 +90,8 @@ def optimize(
     anchor : what holds the shape: Free(), Pinned(...), BoundaryPinned() or BoundaryGlide().
     reference : surface to stay close to, mm.
     progress : called after every step with its number and the step.
+    start : (n, 3) where to begin when not at *control* itself, whose places the anchor and
+        closeness go on to mean, mm.
     resume : where an earlier call with the same control mesh and recipe was left.
 
     Raises
@@ -100,9 +104,9 @@ def optimize(
         When the linear system cannot be factored.
     """
     require_sound(control.mesh)
-    posed = pose(control, anchor, reference)
-    problem, start = recipe.problem(posed)
-    solution = solve(problem, start, recipe.stop, progress, resume=resume)
+    posed = pose(control, anchor, reference, start=start)
+    problem, x0 = recipe.problem(posed)
+    solution = solve(problem, x0, recipe.stop, progress, resume=resume)
     moved = posed.outside(solution.x[: control.vertices.size].reshape(-1, 3))
     result = control.moved(moved)
     return OptimizedNet(
@@ -110,7 +114,7 @@ def optimize(
         solution.end,
         solution.status,
         solution.steps,
-        _quality(result, recipe, reference),
+        _quality(control, result, recipe, reference),
         verdict(problem, solution, control, result, recipe.stop.tolerance),
         remarks(control.mesh),
         solution.state,
@@ -118,11 +122,17 @@ def optimize(
     )
 
 
-def _quality(result: ControlMesh, recipe: Recipe, reference: Surface | None) -> NetQuality:
+def _quality(
+    start: ControlMesh, result: ControlMesh, recipe: Recipe, reference: Surface | None
+) -> NetQuality:
+    """Measure *result* by the angles that were set at the places of *start*."""
+    angle = recipe.angle
+    if callable(angle):
+        angle = target_angles(start, recipe.planarity, angle)
     return net_quality(
         result,
         planarity=recipe.planarity,
-        angle=recipe.angle,
+        angle=angle,
         rhombus=recipe.rhombus,
         reference=reference,
     )

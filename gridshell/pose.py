@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from gridshell.anchors import Anchor, Hold
 from gridshell.arrays import Floats, Points
 from gridshell.mesh import ControlMesh
@@ -22,6 +24,7 @@ class Pose:
     scale : its mean edge, mm.
     hold : what the anchor asks for, in the solver's units.
     reference : surface to stay close to, in the solver's units.
+    moved : (n, 3) where the solve begins when not at the net itself, mm.
     """
 
     net: ControlMesh
@@ -29,11 +32,18 @@ class Pose:
     scale: float
     hold: Hold
     reference: Surface | None = None
+    moved: Points | None = None
 
     @cached_property
     def control(self) -> ControlMesh:
         """The net in the solver's units."""
         return self.net.moved(self.inside(self.net.vertices))
+
+    @property
+    def start(self) -> Floats:
+        """(3 n,) where the solve begins, in the solver's units."""
+        moved = self.net.vertices if self.moved is None else self.moved
+        return np.asarray(self.inside(moved).ravel())
 
     def inside(self, points: Points) -> Points:
         """Positions (n, 3) from mm to the solver's units."""
@@ -44,8 +54,18 @@ class Pose:
         return points * self.scale + self.centre
 
 
-def pose(net: ControlMesh, anchor: Anchor, reference: Surface | None = None) -> Pose:
+def pose(
+    net: ControlMesh,
+    anchor: Anchor,
+    reference: Surface | None = None,
+    *,
+    start: Points | None = None,
+) -> Pose:
     """Scale *net* to mean edge 1 around its centroid and ask the anchor what it holds.
+
+    Parameters
+    ----------
+    start : (n, 3) where the solve begins, mm; None begins at the net.
 
     Raises
     ------
@@ -57,7 +77,7 @@ def pose(net: ControlMesh, anchor: Anchor, reference: Surface | None = None) -> 
     x = (net.vertices - centre) / scale
     hold = anchor.hold(net.moved(x), x)
     surface = None if reference is None else _Scaled(reference, centre, scale)
-    return Pose(net, centre, scale, hold, surface)
+    return Pose(net, centre, scale, hold, surface, start)
 
 
 @dataclass(frozen=True, eq=False)

@@ -103,8 +103,8 @@ class NetRecipe:
         two families of edges: radians, one for all, one per crossing, or a field over positions
         in mm; None leaves it free.
     rhombus : equal diagonals in every quad (eq. 5).
-    keep_shape : fairness acts on the change from the start. False straightens the polylines
-        themselves, which suits a noisy start.
+    keep_shape : fairness acts on the change from where the solve begins. False straightens the
+        polylines themselves, which suits a noisy start.
     fairness, closeness, proximity : guiding weights; closeness None leaves the term out.
     conditions : more of them: prescribed lengths, planes of symmetry.
     stop : steps and tolerance.
@@ -130,8 +130,7 @@ class NetRecipe:
 
     def problem(self, pose: Pose) -> tuple[Problem, Floats]:
         """Planarity, angle, rhombi as goals; fairness, closeness, proximity, anchor as guides."""
-        control = pose.control
-        start = control.vertices.ravel()
+        control, start = pose.control, pose.start
         triples = polyline_triples(control)
         target = second_differences(start, triples) * float(self.keep_shape)
         terms = [
@@ -143,7 +142,7 @@ class NetRecipe:
             goal = EqualDiagonals(control.quads)
             terms.append(Term("equal diagonals", Weight(1.0), goal, goal=True))
         if self.closeness is not None:
-            terms.append(Term("closeness", self.closeness, Closeness(start)))
+            terms.append(Term("closeness", self.closeness, Closeness(control.vertices.ravel())))
         terms += [condition.term(pose) for condition in self.conditions]
         terms += _proximity_terms(pose, self.proximity)
         return _problem(pose, start, terms, NoFolding(pose.control.mesh)), start
@@ -206,7 +205,7 @@ class PaperRecipe:
             goal = EqualDiagonals(control.quads, as_printed=True)
             terms.append(Term("equal diagonals", Weight(1.0), goal, goal=True))
         normals = vertex_normals(control.mesh)
-        start = np.concatenate([control.vertices.ravel(), normals.ravel()])
+        start = np.concatenate([pose.start, normals.ravel()])
         return _problem(pose, start, terms, None), start
 
 

@@ -93,7 +93,8 @@ def _what_gives(problem: Problem, solution: Solution, result: ControlMesh) -> st
             f"{len(solution.blocked)} quads would fold, first quad {f} at {place}: "
             "give the mesh more room there, another layout, or a freer boundary."
         )
-    pulls = {term.name: _pull(problem, term, solution) for term in problem.terms}
+    found = {term.name: _pull(problem, term, solution) for term in problem.terms}
+    pulls = {name: pull for name, (pull, _) in found.items()}
     goals = [term.name for term in problem.terms if term.goal]
     total = np.sum([pulls[name] for name in goals], axis=0)
     held = float(np.linalg.norm(total[problem.fixed]))
@@ -104,22 +105,23 @@ def _what_gives(problem: Problem, solution: Solution, result: ControlMesh) -> st
     strongest = max(guides, key=lambda name: guides[name], default="")
     if strongest and guides[strongest] > _BALANCED * float(np.linalg.norm(free)):
         return f"The {strongest} resists it: lower its weight or let it fall further."
-    each = sum(float(np.linalg.norm(pulls[name])) for name in goals)
-    if float(np.linalg.norm(free)) > _BALANCED * each:
+    uncancelled = float(np.linalg.norm([found[name][1] for name in goals]))
+    if float(np.linalg.norm(free)) > _BALANCED * uncancelled:
         return "It is still on the way: allow more steps."
     names = " and ".join(goals)
     if len(goals) == 1:
-        return f"The {names} has no better place near this start: begin from another mesh."
+        return f"The {names} contradicts itself near this start: begin from another mesh."
     return f"{names} contradict each other near this start: drop or change one of them."
 
 
-def _pull(problem: Problem, term: Term, solution: Solution) -> Floats:
-    """(size,) the term's share of the gradient at the weights of the next step."""
+def _pull(problem: Problem, term: Term, solution: Solution) -> tuple[Floats, float]:
+    """(size,) the term's share of the gradient, and the length it has before parts cancel."""
     found = term.constraint.evaluate(solution.x, term.constraint.lag(solution.x))
     weight = term.weight.at(solution.state.steps)
     pull = weight * np.einsum("mrk,mr->mk", found.values, found.residual)
     columns: Indices = term.constraint.pattern().columns
-    return np.asarray(np.bincount(columns.ravel(), pull.ravel(), problem.size), dtype=np.float64)
+    total = np.bincount(columns.ravel(), pull.ravel(), problem.size)
+    return np.asarray(total, dtype=np.float64), float(np.linalg.norm(pull))
 
 
 def _lost_shape(start: ControlMesh, result: ControlMesh) -> Verdict | None:
