@@ -263,6 +263,8 @@ def _write_reports(
             report=report,
             structure=design.structure,
             parts=design.parts,
+            sheets=design.sheets,
+            clearance=project.joint.clearance,
         )
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")
