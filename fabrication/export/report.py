@@ -137,8 +137,8 @@ def _readable(finding: Mapping[str, Any]) -> dict[str, Any]:
     """*finding* with twist in degrees per metre, as its message says it, and raised exponents."""
     shown = {key: raised(text) if isinstance(text, str) else text for key, text in finding.items()}
     if finding.get("unit") == "rad/mm":
-        values = {key: finding.get(key) for key in ("value", "limit")}
-        shown |= {k: np.degrees(v) * 1000.0 if finite(v) else v for k, v in values.items()}
+        values = {key: finding[key] for key in ("value", "limit") if finite(finding.get(key))}
+        shown |= {key: float(np.degrees(v)) * 1000.0 for key, v in values.items()}
         shown["unit"] = "degrees/m"
     return shown
 

@@ -330,6 +330,7 @@ def test_findings_of_one_code_fold_into_one_line_that_counts_them(page):
         assert f"A{i} 900.0 1 136 A{i} is tight." in words
     folded = re.findall(r"<details( open)?>", text)
     assert folded == ["", " open"]
+    assert 'addEventListener("beforeprint"' in text  # paper cannot be unfolded
 
 
 def test_twist_is_told_in_degrees_per_metre_and_powers_are_raised(page):
