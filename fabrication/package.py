@@ -211,8 +211,10 @@ def _write(
     with clock.stage("sheets"):
         gs.write_net(draft / "net.json", design.control)
         gs.write_obj(draft / "net.obj", design.control.mesh, unit=gs.Unit.MM)
-        sheet_files = write_dxf(design.sheets, draft / "sheets")
         material = design.structure.profile.material
+        sheet_files = write_dxf(
+            design.sheets, draft / "sheets", name=project.name, material=material.name
+        )
         write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
         drawn = [part for path in sheet_files for part in read_dxf(path)]
     with clock.stage("solids"):
@@ -261,6 +263,8 @@ def _write_reports(
             report=report,
             structure=design.structure,
             parts=design.parts,
+            sheets=design.sheets,
+            clearance=project.joint.clearance,
         )
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")

@@ -1,8 +1,10 @@
 """DXF cutting sheets: the only module that imports ezdxf.
 
 Layers: CUT holds one closed outline per part and nothing else; MARK holds single-stroke text to
-engrave; TEXT repeats it as text for people and is not cut. Units are mm, the format is R2010,
-curves are lines. Part strip coordinates (0, 0) lie at the outline's first corner.
+engrave; TEXT is for people: the title above the sheet and the marks of each row left of it, outside
+the sheet so that a machine fed with every layer engraves nothing twice; SHEET is the outline of the
+raw sheet. Units are mm, the format is R2010, curves are lines. Part strip coordinates (0, 0) lie at
+the outline's first corner.
 """
 
 from __future__ import annotations
@@ -12,9 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from ezdxf import units
+from ezdxf import bbox, units
 from ezdxf.document import Drawing
+from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.entities.text import Text
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new, readfile
 from ezdxf.layouts.layout import Modelspace
@@ -32,8 +36,14 @@ _LAYERS = {CUT: 1, MARK: 5, TEXT: 8, SHEET: 9}
 _APPLICATION = "GRIDSHELL"
 
 
-def write_dxf(sheets: Sequence[NestedSheet], folder: Path | str) -> list[Path]:
+def write_dxf(
+    sheets: Sequence[NestedSheet], folder: Path | str, *, name: str = "", material: str = ""
+) -> list[Path]:
     """Write ``sheet-01.dxf``, ... into *folder* and return their paths.
+
+    Parameters
+    ----------
+    name, material : of the project and of the sheets, for the title; left out where empty.
 
     Raises
     ------
@@ -48,7 +58,8 @@ def write_dxf(sheets: Sequence[NestedSheet], folder: Path | str) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         for nested in sheets:
             path = folder / f"sheet-{nested.number:0{digits}d}.dxf"
-            _document(nested, font).saveas(path)
+            title = _title(nested, len(sheets), name, material)
+            _document(nested, title, font).saveas(path)
             paths.append(path)
     except OSError as error:
         raise OutputError(
@@ -57,19 +68,55 @@ def write_dxf(sheets: Sequence[NestedSheet], folder: Path | str) -> list[Path]:
     return paths
 
 
-def _document(nested: NestedSheet, font: _StrokeFont) -> Drawing:
+def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
+    """One line: project, sheet of how many, material and thickness, size of the sheet, parts."""
+    sheet, parts = nested.sheet, [placement.part for placement in nested.placements]
+    thickness = " / ".join(f"{t:g} mm" for t in sorted({part.thickness for part in parts}))
+    pieces = (
+        " ".join(name.split()),
+        f"sheet {nested.number} of {sheets}",
+        " ".join(f"{material} {thickness}".split()),
+        f"raw sheet {sheet.length:g} x {sheet.width:g} mm",
+        f"{len(parts)} {'part' if len(parts) == 1 else 'parts'}",
+    )
+    return "  |  ".join(piece for piece in pieces if piece)
+
+
+def _document(nested: NestedSheet, title: str, font: _StrokeFont) -> Drawing:
     document = new("R2010", units=units.MM)
     document.appids.add(_APPLICATION)
     for name, colour in _LAYERS.items():
         document.layers.add(name, color=colour)
-    document.layers.get(SHEET).dxf.plot = 0
     space = document.modelspace()
     sheet = nested.sheet
     corners = [(0.0, 0.0), (sheet.length, 0.0), (sheet.length, sheet.width), (0.0, sheet.width)]
-    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": SHEET})
+    outer: list[DXFGraphic] = [
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": SHEET})
+    ]
+    outer += _texts(space, nested, title)
     for placement in nested.placements:
         _draw(space, placement, font)
+    extents = bbox.extents(outer)
+    space.reset_extents(extents.extmin, extents.extmax)
     return document
+
+
+def _texts(space: Modelspace, nested: NestedSheet, title: str) -> list[Text]:
+    """The title above the sheet, and left of every row the marks of its parts in their order."""
+    height = nested.sheet.width / 40.0
+    rows: dict[float, list[Placement]] = {}
+    for placement in nested.placements:
+        rows.setdefault(placement.y, []).append(placement)
+    above = space.add_text(title, height=height, dxfattribs={"layer": TEXT})
+    above.set_placement((0.0, nested.sheet.width + height), align=TextEntityAlignment.LEFT)
+    texts = [above]
+    for y, row in rows.items():
+        width = row[0].part.width
+        marks = ", ".join(p.part.mark for p in sorted(row, key=lambda p: p.x))
+        beside = space.add_text(marks, height=min(height, width / 2.0), dxfattribs={"layer": TEXT})
+        beside.set_placement((-height, y + width / 2.0), align=TextEntityAlignment.MIDDLE_RIGHT)
+        texts.append(beside)
+    return texts
 
 
 def _draw(space: Modelspace, placement: Placement, font: _StrokeFont) -> None:
@@ -82,10 +129,6 @@ def _draw(space: Modelspace, placement: Placement, font: _StrokeFont) -> None:
         for stroke in font.strokes(label):
             points = (stroke + offset).tolist()
             space.add_lwpolyline(points, dxfattribs={"layer": MARK})
-        text = space.add_text(label.text, height=label.height, dxfattribs={"layer": TEXT})
-        text.set_placement(
-            (label.x + offset[0], label.y + offset[1]), align=TextEntityAlignment.MIDDLE_CENTER
-        )
 
 
 class _StrokeFont:

@@ -21,9 +21,11 @@ from plotly.offline import get_plotlyjs
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.cut import Edge, outline
 from fabrication.errors import OutputError
+from fabrication.export.schedule import mass
 from fabrication.export.shell import shell_figure
-from fabrication.export.words import fixed, number, plural
+from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
+from fabrication.nesting import NestedSheet
 from fabrication.parts import FlatPart
 from fabrication.structures import Structure
 from gridshell.arrays import Floats
@@ -39,6 +41,8 @@ def write_report(
     report: Mapping[str, Any],
     structure: Structure,
     parts: Sequence[FlatPart],
+    sheets: Sequence[NestedSheet] = (),
+    clearance: float | None = None,
 ) -> None:
     """Write the page.
 
@@ -48,6 +52,8 @@ def write_report(
     name : the project's name, as the title.
     report : what ``report.json`` holds; a figure that is missing or None reads "not measured".
     structure, parts : one part per lamella, in the structure's order.
+    sheets : where the parts lie; without them the cut list names no sheet.
+    clearance : of the slots, mm; None leaves it out.
 
     Raises
     ------
@@ -60,7 +66,11 @@ def write_report(
         report=report,
         level=level,
         verdict=verdict,
-        findings=sorted(report.get("findings") or (), key=_gravity),
+        groups=_groups(report.get("findings") or ()),
+        masses=[mass(part, structure.profile.material) for part in parts],
+        sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
+        raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
+        clearance=clearance,
         structure=structure,
         parts=parts,
         families=[sum(lamella.family == f for lamella in structure.lamellas) for f in (1, 2)],
@@ -86,7 +96,7 @@ def _template() -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(figure=number, fixed=fixed)
+    environment.filters.update(figure=number, fixed=fixed, plural=plural)
     return environment.get_template("report.html")
 
 
@@ -112,6 +122,25 @@ def _gravity(finding: Mapping[str, Any]) -> int:
     """0 for an error, and for what is no known severity."""
     grade = finding.get("severity")
     return _GRADES.index(grade) if grade in _GRADES else 0
+
+
+def _groups(findings: Sequence[Mapping[str, Any]]) -> list[list[dict[str, Any]]]:
+    """The findings as people read them, those of one severity and code together, gravest first."""
+    groups: dict[tuple[int, Any], list[dict[str, Any]]] = {}
+    for finding in sorted(findings, key=_gravity):
+        key = _gravity(finding), finding.get("code")
+        groups.setdefault(key, []).append(_readable(finding))
+    return list(groups.values())
+
+
+def _readable(finding: Mapping[str, Any]) -> dict[str, Any]:
+    """*finding* with twist in degrees per metre, as its message says it, and raised exponents."""
+    shown = {key: raised(text) if isinstance(text, str) else text for key, text in finding.items()}
+    if finding.get("unit") == "rad/mm":
+        values = {key: finding[key] for key in ("value", "limit") if finite(finding.get(key))}
+        shown |= {key: float(np.degrees(v)) * 1000.0 for key, v in values.items()}
+        shown["unit"] = "degrees/m"
+    return shown
 
 
 # ---- the longest strip ----------------------------------------------------------------------

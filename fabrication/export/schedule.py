@@ -6,6 +6,8 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from fabrication.errors import OutputError
 from fabrication.nesting import NestedSheet
 from fabrication.parts import FlatPart
@@ -67,6 +69,6 @@ def _row(part: FlatPart, material: Material, sheet: int) -> list[str | int]:
         len(part.slots),
         f"{min(widths):.2f}" if widths else "",
         f"{max(widths):.2f}" if widths else "",
-        f"{mass(part, material):.3f}",
+        np.format_float_positional(mass(part, material), precision=6, fractional=False, trim="-"),
         sheet,
     ]

@@ -1,8 +1,19 @@
-"""STEP: one assembly with a named, coloured part per lamella (cadquery's product structure)."""
+"""STEP: one assembly with a named, coloured part per lamella (cadquery's product structure).
+
+cadquery hands names to the kernel byte by byte and leaves the kernel's own header, so the name of
+the whole and the header are put in after the kernel has written: strings in the seven-bit form of
+ISO 10303-21, and the same bytes for the same solids apart from the time stamp and the colours at
+the end, whose order the kernel takes from where they lie in memory.
+"""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from itertools import count
 from pathlib import Path
 
 import build123d
@@ -13,6 +24,11 @@ from OCP.Message import Message
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
 from fabrication.structures import Structure
+
+_PLACEHOLDER = "@whole@"
+_SCHEMA = re.compile(rb"FILE_SCHEMA\(.*?\);", re.DOTALL)
+_PROCESSOR = re.compile(rb"'(Open CASCADE STEP processor[^']*)'")
+_OCCURRENCE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
 
 
 def assembly(
@@ -32,8 +48,15 @@ def assembly(
     return whole
 
 
-def write_step(whole: cadquery.Assembly, path: Path | str) -> None:
+def write_step(
+    whole: cadquery.Assembly, path: Path | str, *, written: datetime | None = None
+) -> None:
     """Write the assembly in mm, without parameter curves: other programs compute their own.
+
+    Parameters
+    ----------
+    written : the time stamp of the file. Left out it is the environment's ``SOURCE_DATE_EPOCH``
+        (seconds since 1970) where that is set, and else now.
 
     Raises
     ------
@@ -41,8 +64,70 @@ def write_step(whole: cadquery.Assembly, path: Path | str) -> None:
         When the file cannot be written.
     """
     quiet()
-    if not exportAssembly(whole, str(path), write_pcurves=False):
+    path = Path(path)
+    nameless = cadquery.Assembly(whole.obj, whole.loc, _PLACEHOLDER, whole.color)
+    nameless.children = whole.children
+    if not exportAssembly(nameless, str(path), write_pcurves=False):
         raise OutputError("The STEP file cannot be written", where=str(path))
+    try:
+        path.write_bytes(_signed(path.read_bytes(), whole.name, path.name, written or _now()))
+    except OSError as error:
+        raise OutputError(
+            "The STEP file cannot be written", where=str(path), value=error.strerror or ""
+        ) from None
+
+
+def _signed(content: bytes, name: str, file: str, written: datetime) -> bytes:
+    """The kernel's file with our header, *name* as the product, occurrences numbered from 1.
+
+    The kernel numbers occurrences on from the last file it wrote in the same process.
+    """
+    head, data = content.split(b"DATA;", 1)
+    schema, processor = _SCHEMA.search(head), _PROCESSOR.search(head)
+    header = [
+        "ISO-10303-21;",
+        "HEADER;",
+        "FILE_DESCRIPTION(('Gridshell lamellas, bent and twisted into place'),'2;1');",
+        f"FILE_NAME({step_string(file)},'{written:%Y-%m-%dT%H:%M:%S}',(''),(''),",
+        f"  '{processor[1].decode() if processor else ''}','{_program()}','');",
+        schema[0].decode() if schema else "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));",
+        "ENDSEC;",
+        "DATA;",
+    ]
+    numbers = count(1)
+
+    def renumbered(found: re.Match[bytes]) -> bytes:
+        rest = re.sub(rb"\n *", b"", found[2])  # lines break by the number's length
+        return b"%s'%d'%s" % (found[1], next(numbers), rest)
+
+    data = data.replace(f"'{_PLACEHOLDER}'".encode(), step_string(name).encode())
+    data = _OCCURRENCE.sub(renumbered, data)
+    return "\n".join(header).encode() + data
+
+
+def step_string(text: str) -> str:
+    r"""*text* as a quoted string of ISO 10303-21: seven bits, the rest as \X2\ or \X4\ codes."""
+    pieces = []
+    for run in re.findall(r"[ -~]+|[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+", text):
+        if run[0] > "\uffff":
+            pieces.append("\\X4\\" + "".join(f"{ord(c):08X}" for c in run) + "\\X0\\")
+        elif not " " <= run[0] <= "~":
+            pieces.append("\\X2\\" + "".join(f"{ord(c):04X}" for c in run) + "\\X0\\")
+        else:
+            pieces.append(run.replace("\\", "\\\\").replace("'", "''"))
+    return "'" + "".join(pieces) + "'"
+
+
+def _program() -> str:
+    try:
+        return f"gridshell {version('gridshell')}"
+    except PackageNotFoundError:  # run from a source tree
+        return "gridshell"
+
+
+def _now() -> datetime:
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    return datetime.fromtimestamp(int(epoch), UTC) if epoch.isdecimal() else datetime.now(UTC)
 
 
 def quiet() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -35,3 +36,8 @@ def fixed(value: Any, decimals: int) -> str:
 def finite(value: Any) -> bool:
     """Whether *value* is a number that can be shown."""
     return isinstance(value, (int, float)) and bool(np.isfinite(value))
+
+
+def raised(text: str) -> str:
+    """*text* with mm2 and mm3 as mm² and mm³."""
+    return re.sub(r"\bmm([23])\b", lambda found: "mm" + "²³"[int(found[1]) - 2], text)

@@ -3,7 +3,7 @@ from itertools import combinations
 import ezdxf
 import numpy as np
 import pytest
-from ezdxf import units
+from ezdxf import bbox, units
 from ezdxf.enums import TextEntityAlignment
 from shapely import Polygon, box
 
@@ -132,11 +132,23 @@ def test_everything_to_cut_and_to_engrave_lies_inside_the_margins(pairs):
         assert room.contains(Polygon(np.concatenate(drawn)).convex_hull)
 
 
-def test_the_sheet_itself_is_drawn_but_not_plotted(pairs):
+def test_the_raw_sheet_is_drawn_and_seen_on_paper(pairs):
     for _, document in pairs:
         (frame,) = on(document, "SHEET")
         assert Polygon(corners(frame)).equals(box(0.0, 0.0, 12000.0, 350.0))
-        assert document.layers.get("SHEET").dxf.plot == 0
+        layer = document.layers.get("SHEET")
+        assert layer.dxf.get("plot", 1) == 1
+        assert layer.is_on()
+
+
+def test_the_extents_are_those_of_the_drawing(pairs):
+    for _, document in pairs:
+        low, high = (document.header[key] for key in ("$EXTMIN", "$EXTMAX"))
+        everything = bbox.extents(document.modelspace())
+        np.testing.assert_allclose(low, everything.extmin, atol=1e-6)
+        np.testing.assert_allclose(high, everything.extmax, atol=1e-6)
+        assert low[0] < 0.0 < 12000.0 <= high[0]
+        assert 350.0 < high[1] < 400.0
 
 
 # ---- marks ----------------------------------------------------------------------------------
@@ -159,20 +171,45 @@ def test_marks_are_engraved_as_open_strokes_inside_their_part(pairs):
             assert any(shape.contains(Polygon([*line, line[0]]).convex_hull) for shape in shapes)
 
 
-def test_texts_are_the_labels_where_the_parts_lie(pairs):
-    for sheet, document in pairs:
-        expected = [
-            (label.text, label.height, label.x + placement.x, label.y + placement.y)
-            for placement in sheet.placements
-            for label in placement.part.labels
-        ]
-        found = []
+def test_texts_lie_outside_the_raw_sheet(pairs):
+    sheet = box(0.0, 0.0, 12000.0, 350.0)
+    for _, document in pairs:
         for text in on(document, "TEXT"):
+            extents = bbox.extents([text])
+            low, high = extents.extmin, extents.extmax
+            assert sheet.distance(box(low.x, low.y, high.x, high.y)) > 1.0
+
+
+def test_the_marks_of_a_row_stand_left_of_it_in_their_order(pairs):
+    for sheet, document in pairs:
+        expected = {}
+        for p in sorted(sheet.placements, key=lambda p: p.x):
+            expected.setdefault(p.y + p.part.width / 2.0, []).append(p.part.mark)
+        found = {}
+        for text in on(document, "TEXT")[1:]:
             align, point, _ = text.get_placement()
-            assert align is TextEntityAlignment.MIDDLE_CENTER
-            found.append((text.dxf.text, text.dxf.height, point.x, point.y))
-        assert [one[0] for one in found] == [one[0] for one in expected]
-        np.testing.assert_allclose([f[1:] for f in found], [e[1:] for e in expected], atol=1e-9)
+            assert align is TextEntityAlignment.MIDDLE_RIGHT
+            found[point.y] = text.dxf.text.split(", ")
+        assert found == expected
+
+
+def test_the_title_says_project_sheet_material_thickness_and_size(enneper, tmp_path):
+    nested = fab.nest(enneper.parts, fab.Sheet(12000.0, 350.0))
+    paths = fab.write_dxf(nested, tmp_path, name="Dächle\nno. 1", material="stainless")
+    title, *_ = on(ezdxf.readfile(paths[1]), "TEXT")
+    assert title.dxf.text.split("  |  ") == [
+        "Dächle no. 1",
+        f"sheet 2 of {len(nested)}",
+        "stainless 2.5 mm",
+        "raw sheet 12000 x 350 mm",
+        f"{len(nested[1].placements)} parts",
+    ]
+
+
+def test_a_title_without_a_name_or_a_material_leaves_them_out(sheets):
+    nested, paths = sheets("enneper")
+    title, *_ = on(ezdxf.readfile(paths[0]), "TEXT")
+    assert title.dxf.text.startswith(f"sheet 1 of {len(nested)}  |  2.5 mm  |  raw sheet")
 
 
 def test_a_mark_is_engraved_as_high_as_its_label_says(sheets):

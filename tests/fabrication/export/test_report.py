@@ -10,9 +10,11 @@ from plotly.offline import get_plotlyjs
 import gridshell as gs
 from fabrication.errors import OutputError
 from fabrication.export.report import write_report
+from fabrication.export.schedule import mass
 from fabrication.joints import SlotJoint
+from fabrication.nesting import nest
 from fabrication.parts import flat_parts
-from fabrication.stock import STAINLESS, Profile
+from fabrication.stock import STAINLESS, Profile, Sheet
 from fabrication.structures import structure
 
 HOSTILE = "</script><script>alert('x')</script> & \"Söhne\""
@@ -310,10 +312,54 @@ def test_the_verdict_counts_the_findings(page, severities, level, line):
 
 def test_findings_are_listed_gravest_first(page):
     words = visible(page(REPORT | {"findings": [finding("info"), finding("error", limit=None)]}))
-    error = "error bend-radius A1 900.0 – A1 bends too tightly."
-    info = "info bend-radius A1 900.0 1 136 A1 bends too tightly."
-    assert f"{error} {info}" in words
+    error = "error bend-radius 1 place A1 bends too tightly."
+    info = "info bend-radius 1 place A1 bends too tightly."
+    assert words.index(error) < words.index("A1 900.0 – A1 bends too tightly.") < words.index(info)
+    assert words.index(info) < words.index("A1 900.0 1 136 A1 bends too tightly.")
     assert "No findings." not in words
+
+
+def test_findings_of_one_code_fold_into_one_line_that_counts_them(page):
+    many = [finding("error", where=f"A{i}", message=f"A{i} is tight.") for i in range(1, 8)]
+    text = page(REPORT | {"findings": [*many, finding("error", code="twist")]})
+    assert text.count("<summary>") == 2
+    words = visible(text)
+    assert "error bend-radius 7 places A1 is tight." in words
+    assert "error twist 1 place" in words
+    for i in range(1, 8):
+        assert f"A{i} 900.0 1 136 A{i} is tight." in words
+    folded = re.findall(r"<details( open)?>", text)
+    assert folded == ["", " open"]
+    assert 'addEventListener("beforeprint"' in text  # paper cannot be unfolded
+
+
+def test_twist_is_told_in_degrees_per_metre_and_powers_are_raised(page):
+    twist = finding("error", code="twist", value=0.001, limit=0.0005, unit="rad/mm")
+    stress = finding("error", code="edgewise-bend", unit="N/mm2", message="250 N/mm2, 3 mm3.")
+    words = visible(page(REPORT | {"findings": [twist, stress]}))
+    assert "A1 57.30 28.65 degrees/m" in words
+    assert "N/mm² 250 N/mm², 3 mm³." in words
+    assert "rad/mm" not in words
+    assert not re.search(r"mm[23]\b", words)
+
+
+def test_clearance_raw_sheet_and_sheet_of_every_part_are_told(tmp_path, catenoid):
+    shell, parts = catenoid
+    sheets = nest(parts, Sheet(6000.0, 700.0))
+    assert len(sheets) > 1
+    path = tmp_path / "report.html"
+    more = {"sheets": sheets, "clearance": 0.25}
+    write_report(path, name="x", report=REPORT, structure=shell, parts=parts, **more)
+    text = path.read_text(encoding="utf-8").replace(get_plotlyjs(), "")
+    words = visible(text)
+    assert "Slots with 0.25 mm clearance." in words
+    assert f"Cut from {len(sheets)} raw sheets of 6000 × 700 mm." in words
+    number = {p.part.mark: sheet.number for sheet in sheets for p in sheet.placements}
+    rows = re.findall(r"<tr>\s*<td data-value.*?</tr>", text, flags=re.DOTALL)
+    for part, row in zip(parts, rows, strict=True):
+        cells = re.findall(r'data-value="([^"]*)"', row)
+        assert float(cells[5]) == pytest.approx(mass(part, STAINLESS))
+        assert int(cells[6]) == number[part.mark]
 
 
 def test_what_is_not_checked_is_said(page):

@@ -58,6 +58,17 @@ def test_a_metre_of_steel_weighs_what_it_weighs(strip):
     assert mass(strip("A1", 1000.0), fab.STAINLESS) == pytest.approx(1.975)
 
 
+def test_the_mass_of_a_small_part_keeps_six_digits(strip, tmp_path):
+    parts = [strip("A1", 123.4567)]
+    light = fab.Material("paper", modulus=1000.0, strength=10.0, density=1.0)
+    nested = fab.nest(parts, fab.Sheet(3000.0, 1000.0))
+    fab.write_schedule(tmp_path / "parts.csv", parts, nested, light)
+    (row,) = csv.DictReader((tmp_path / "parts.csv").read_text().splitlines())
+    assert float(row["mass_kg"]) == pytest.approx(mass(parts[0], light), rel=5e-6)
+    assert float(row["mass_kg"]) < 1e-4
+    assert "e" not in row["mass_kg"]
+
+
 def test_a_part_without_slots_leaves_their_widths_empty(strip, tmp_path):
     parts = [strip("A1", 1000.0)]
     fab.write_schedule(

@@ -1,3 +1,6 @@
+import re
+from datetime import datetime
+
 import cadquery
 import pytest
 from OCP.Message import Message, Message_PrinterOStream
@@ -5,6 +8,7 @@ from OCP.Message import Message, Message_PrinterOStream
 import fabrication as fab
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
+from fabrication.export.step import step_string
 from fabrication.solid import volume
 
 pytestmark = pytest.mark.xdist_group("kernel")
@@ -89,3 +93,59 @@ def test_any_name_of_the_whole_can_be_written(pair, files, tmp_path, name):
     path = tmp_path / "structure.step"
     fab.write_step(fab.assembly(files(pair).solids, pair.structure, name=name), path)
     assert [part.mark for part in fab.read_step(path)] == ["A1", "A2", "B1", "B2"]
+
+
+@pytest.mark.parametrize("name", ["é☃", "Dächle", "𝄞 key", "it's a\\b", "x" * 200 + "é", "日本\tX"])
+def test_the_name_of_the_whole_survives_in_seven_bits(pair, files, tmp_path, name):
+    path = tmp_path / "structure.step"
+    fab.write_step(fab.assembly(files(pair).solids, pair.structure, name=name), path)
+    assert path.read_bytes().isascii()
+    assert cadquery.Assembly.importStep(str(path)).name == name
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("plain", "'plain'"),
+        ("é☃", r"'\X2\00E92603\X0\'"),
+        ("a𝄞b", r"'a\X4\0001D11E\X0\b'"),
+        ("it's", "'it''s'"),
+        ("a\\b", r"'a\\b'"),
+        ("", "''"),
+    ],
+)
+def test_strings_are_written_as_the_standard_asks(text, written):
+    assert step_string(text) == written
+
+
+def test_the_header_names_the_file_the_program_and_no_stand_in_person(pair, files):
+    head = files(pair).step.read_text().split("DATA;")[0]
+    assert f"FILE_NAME('{files(pair).step.name}'" in head
+    assert "'gridshell" in head
+    assert "Author" not in head
+    assert "Shape Model" not in head
+    assert "FILE_SCHEMA(('AUTOMOTIVE_DESIGN" in head
+
+
+def test_the_same_solids_at_the_same_time_give_the_same_bytes_up_to_the_colours(
+    pair, files, tmp_path
+):
+    whole = fab.assembly(files(pair).solids, pair.structure, name="shell")
+    paths = [tmp_path / folder / "structure.step" for folder in "ab"]
+    for path in paths:
+        path.parent.mkdir()
+        fab.write_step(whole, path, written=datetime(2001, 2, 3, 4, 5, 6))
+    colours = re.compile(rb"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION")
+    (first, tail), (second, other) = (colours.split(p.read_bytes(), maxsplit=1) for p in paths)
+    assert first == second
+    assert tail.count(b";") == other.count(b";")
+    assert first.count(b"MANIFOLD_SOLID_BREP(") == first.count(b"NEXT_ASSEMBLY_USAGE") == 4
+    assert b"'2001-02-03T04:05:06'" in first
+    assert whole.name == "shell"
+
+
+def test_the_time_stamp_follows_the_environment(pair, files, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    path = tmp_path / "structure.step"
+    fab.write_step(fab.assembly(files(pair).solids, pair.structure, name="shell"), path)
+    assert "'1970-01-02T00:00:00'" in path.read_text().split("DATA;")[0]
