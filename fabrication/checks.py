@@ -6,6 +6,7 @@ Limits (t thickness, h width, E modulus, f strength, G = E / 2.6):
 * twist (St Venant): rate <= f / (sqrt(3) G t)
 * bending about the strong axis: stress E kappa_n h / 2 <= f; zero on an exact asymptotic net
 * slots: material of at least one thickness between two slots and beside the cut ends
+* strips that pass through each other away from their slots: see ``collisions``
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from fabrication.collisions import collisions
 from fabrication.finding import Finding, Severity
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
@@ -26,14 +28,14 @@ _SHEAR_RATIO = 2.6
 
 
 def check(structure: Structure, parts: Sequence[FlatPart]) -> tuple[Finding, ...]:
-    """All findings about lamellas and flat parts, in the structure's order."""
+    """All findings about lamellas and flat parts, in the structure's order, then about pairs."""
     found: list[Finding] = []
     for lamella, part in zip(structure.lamellas, parts, strict=True):
         found += _bending(lamella, structure.profile)
         found += _slots(part)
         if lamella.closed:
             found.append(_seam(lamella))
-    return tuple(found)
+    return (*found, *collisions(structure, parts))
 
 
 def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
