@@ -225,7 +225,7 @@ def test_a_sheet_of_one_s_own_is_used(special):
 
 
 def test_a_bad_design_is_still_built_and_its_findings_are_in_the_report(tmp_path):
-    weak = {"name": "weak", "modulus": 200e3, "strength": 1.0, "density": 7900.0}
+    weak = {"name": "weak", "modulus": 200e3, "strength": 10.0, "density": 7900.0}
     profile = {"width": 100.0, "thickness": 2.5, "material": weak}
     report = fab.run(project(profile=profile), tmp_path)
     found = report["findings"]
