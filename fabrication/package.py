@@ -25,7 +25,8 @@ from fabrication.joints import SlotJoint
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.nesting import NestedSheet, nest
 from fabrication.parts import FlatPart, flat_parts
-from fabrication.project import AsymptoticPatchSection, MeshSection, Project
+from fabrication.sections import MeshSection, Project
+from fabrication.settings import patch_of, profile_of, surface_of
 from fabrication.structures import Structure, structure
 
 CLOSURE_LIMIT = 0.05
@@ -40,16 +41,6 @@ CLASH_LIMIT = 1e-3
 Report = dict[str, Any]
 Announce = Callable[[str], None]
 
-_SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
-    "enneper": gs.Enneper,
-    "catenoid": gs.Catenoid,
-    "helicoid": gs.Helicoid,
-    "hypar": gs.Hypar,
-    "hyperboloid": gs.Hyperboloid,
-    "scherk": gs.Scherk,
-    "torus": gs.Torus,
-    "sphere": gs.Sphere,
-}
 _ANCHORS: dict[str, gs.Anchor] = {
     "free": gs.Free(),
     "boundary-pinned": gs.BoundaryPinned(),
@@ -130,7 +121,7 @@ def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Rep
         result = _optimise(project, control, surface).require()
     with clock.stage("structure"):
         skin = gs.diagonal_meshes(result.control)[0 if project.net.skin == "D1" else 1]
-        built = structure(skin, _profile(project), overhang=project.profile.overhang)
+        built = structure(skin, profile_of(project.profile), overhang=project.profile.overhang)
     with clock.stage("parts"):
         joint = SlotJoint(project.joint.clearance, project.joint.depth_clearance)
         parts = flat_parts(built, joint)
@@ -152,15 +143,8 @@ def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.AnalyticSu
     source = project.source
     if isinstance(source, MeshSection):
         return _mesh_start(source, folder), None
-    sizes = source.surface.model_dump()
-    surface = _SURFACES[sizes.pop("kind")](**sizes)
-    patch = source.patch
-    layout: gs.Patch
-    if isinstance(patch, AsymptoticPatchSection):
-        layout = gs.AsymptoticPatch(patch.p, patch.q, patch.lamellas)
-    else:
-        layout = gs.BisectingPatch(patch.v, patch.cells, patch.u)
-    return gs.control_patch(surface, layout), surface
+    surface = surface_of(source.surface)
+    return gs.control_patch(surface, patch_of(source.patch)), surface
 
 
 def _mesh_start(section: MeshSection, folder: Path) -> gs.ControlMesh:
@@ -179,15 +163,6 @@ def _optimise(
     recipe = gs.a_net(angle=angle, steps=net.steps, tolerance=net.tolerance)
     reference = surface if net.keep_to_surface else None
     return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
-
-
-def _profile(project: Project) -> stock.Profile:
-    section = project.profile
-    if isinstance(section.material, str):
-        material = stock.MATERIALS[section.material]
-    else:
-        material = stock.Material(**section.material.model_dump())
-    return stock.Profile(section.width, section.thickness, material)
 
 
 # ---- files -------------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ from fabrication.cut import Edge, Slot
 from fabrication.finding import Finding, Severity
 from fabrication.joints.joint import Joint
 from fabrication.node import Node
-from fabrication.stock import Profile
+from fabrication.stock import require_web
 from fabrication.structures import Structure
 from gridshell import SettingError
 from gridshell.arrays import Floats
@@ -70,7 +70,7 @@ class SlotJoint(Joint):
         SettingError
             When the slots would cut the strips through.
         """
-        self.require_web(structure.profile)
+        require_web(structure.profile, self.depth_clearance)
         slots: dict[str, list[Slot]] = {lamella.mark: [] for lamella in structure.lamellas}
         regular = [node for node in structure.nodes if node.regular]
         widths = self._widths(structure, regular)
@@ -90,23 +90,6 @@ class SlotJoint(Joint):
                     )
                 )
         return {mark: tuple(sorted(cuts, key=lambda s: s.x)) for mark, cuts in slots.items()}
-
-    def require_web(self, profile: Profile) -> None:
-        """Refuse slots as deep as the strip is wide.
-
-        Raises
-        ------
-        SettingError
-            When half the width and the depth clearance leave nothing of the strip.
-        """
-        if not self.depth_clearance < profile.width / 2.0:
-            raise SettingError(
-                "The slots cut the strips through",
-                where="depth_clearance",
-                value=f"{self.depth_clearance:g} mm",
-                limit=f"below half the strip's width, {profile.width / 2.0:g} mm",
-                advice="0.5 mm",
-            )
 
     def findings(self, structure: Structure) -> tuple[Finding, ...]:
         """Nodes without a joint, and angles too sharp to slot."""
