@@ -198,15 +198,22 @@ def _mass(kilograms: float) -> str:
 
 
 def _print_findings(console: Console, findings: list[dict[str, Any]]) -> None:
-    """One line for each kind of finding: the first of its kind, and how many more there are."""
+    """One line for each kind of finding: the worst of its kind, and how many more there are."""
     colours = {"error": "red", "warning": "yellow", "info": "cyan"}
     kinds: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for finding in findings:
         kinds.setdefault((finding["severity"], finding["code"]), []).append(finding)
     for (severity, code), same in kinds.items():
-        line = f"  [{colours[severity]}]{severity}[/] {code}: {_plain(same[0]['message'])}"
+        worst = max(same, key=_excess)
+        line = f"  [{colours[severity]}]{severity}[/] {code}: {_plain(worst['message'])}"
         more = f" And {len(same) - 1} more like this, see report.html." if len(same) > 1 else ""
         console.print(line + more)
+
+
+def _excess(finding: dict[str, Any]) -> float:
+    """How many times a value is over its limit, or under it where it is too small."""
+    low, high = sorted((float(finding["value"]), float(finding["limit"])))
+    return high / low if low > 0.0 else float("inf")
 
 
 def _plain(text: str) -> str:
