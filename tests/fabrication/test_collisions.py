@@ -45,8 +45,11 @@ def slot(at, node):
 def found(strip, profile):
     """Findings about strips, with slots by mark."""
 
-    def build(lamellas, **slots):
-        parts = [strip(one.mark, one.length, slots.get(one.mark, ())) for one in lamellas]
+    def build(lamellas, widths=(WIDTH, WIDTH), **slots):
+        parts = [
+            strip(one.mark, one.length, slots.get(one.mark, ()), width)
+            for one, width in zip(lamellas, widths, strict=False)
+        ]
         return collisions(fab.Structure(tuple(lamellas), (), profile), parts)
 
     return build
@@ -70,6 +73,14 @@ def test_strips_above_each_other_do_not_meet(found, height, count):
 @pytest.mark.parametrize(("reach", "count"), [(1.0, 1), (-1.0, 0)])
 def test_a_strip_that_stops_short_of_another_does_not_meet_it(found, reach, count):
     assert len(found(crossed(reach=reach))) == count
+
+
+@pytest.mark.parametrize("widths", [(WIDTH, 3.0 * WIDTH), (3.0 * WIDTH, WIDTH)])
+def test_a_strip_through_the_middle_of_a_wider_one_is_found(found, widths):
+    """Only the narrow strip's edges meet the other, near a cell's start, off its diagonal."""
+    cell = LENGTH / 24.0
+    strips = crossed(at=(15.05 * cell - LENGTH / 2.0, 0.0), reach=1.01 * LENGTH / 2.0)
+    assert len(found(strips, widths)) == 1
 
 
 def test_parallel_strips_do_not_meet(found):
