@@ -24,8 +24,9 @@ from .node import Node as Node
 from .package import run as run
 from .parts import FlatPart as FlatPart
 from .parts import flat_parts as flat_parts
-from .project import Project as Project
+from .project import project_text as project_text
 from .project import read_project as read_project
+from .sections import Project as Project
 from .solid import solids as solids
 from .stock import (
     BIRCH_PLY as BIRCH_PLY,

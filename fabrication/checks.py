@@ -4,8 +4,12 @@ Limits (t thickness, h width, E modulus, f strength, G = E / 2.6):
 
 * bending about the weak axis: radius >= E t / (2 f)
 * twist (St Venant): rate <= f / (sqrt(3) G t)
+* stretch by twist: a strip of one piece shortens until its mean stretch is nought, which leaves its
+  edges with E rate^2 h^2 / 12 <= f and half of that, compressed, in its middle
 * bending about the strong axis: stress E kappa_n h / 2 <= f; zero on an exact asymptotic net
-* slots: material of at least one thickness between two slots and beside the cut ends
+* slots: material of at least one thickness between two slots and beside the cut ends,
+  and behind each slot
+* strips that pass through each other away from their slots: see ``collisions``
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from fabrication.collisions import collisions
 from fabrication.finding import Finding, Severity
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
@@ -26,14 +31,14 @@ _SHEAR_RATIO = 2.6
 
 
 def check(structure: Structure, parts: Sequence[FlatPart]) -> tuple[Finding, ...]:
-    """All findings about lamellas and flat parts, in the structure's order."""
+    """All findings about lamellas and flat parts, in the structure's order, then about pairs."""
     found: list[Finding] = []
     for lamella, part in zip(structure.lamellas, parts, strict=True):
         found += _bending(lamella, structure.profile)
         found += _slots(part)
         if lamella.closed:
             found.append(_seam(lamella))
-    return tuple(found)
+    return (*found, *collisions(structure, parts))
 
 
 def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
@@ -69,6 +74,7 @@ def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
             f"{material.name} of {profile.thickness:g} mm bears "
             f"{np.degrees(fastest) * 1000:.0f}. Use a thinner strip.",
         )
+    yield from _stretch(lamella.mark, rate, profile)
     stress = material.modulus * strong * profile.width / 2.0
     if stress > material.strength / 2.0:
         yield Finding(
@@ -78,8 +84,28 @@ def _bending(lamella: Lamella, profile: Profile) -> Iterator[Finding]:
             stress,
             material.strength,
             "N/mm2",
-            f"{lamella.mark} must bend about its strong axis: {stress:.0f} N/mm2. The net is not "
-            "asymptotic enough there: optimise further, or use a narrower strip.",
+            f"{lamella.mark} must bend about its strong axis: {stress:.0f} N/mm2, "
+            f"{material.strength:g} allowed. Its curve is not asymptotic there. Use more lamellas, "
+            "where the net is coarse (half the bay, a quarter of the stress), or a narrower strip.",
+        )
+
+
+def _stretch(mark: str, rate: float, profile: Profile) -> Iterator[Finding]:
+    """The edges of a twisted strip are longer than its middle."""
+    material, width = profile.material, profile.width
+    stress = material.modulus * rate**2 * width**2 / 12.0
+    if stress > material.strength:
+        widest = width * np.sqrt(material.strength / stress)
+        yield Finding(
+            "twist-stretch",
+            Severity.ERROR,
+            mark,
+            stress,
+            material.strength,
+            "N/mm2",
+            f"The twist of {mark} stretches its edges: {stress:.0f} N/mm2, {material.strength:g} "
+            f"allowed. Use a strip of at most {np.floor(widest * 10.0) / 10.0:g} mm in width, or a "
+            "flatter surface, which twists less.",
         )
 
 
@@ -96,6 +122,19 @@ def _slots(part: FlatPart) -> Iterator[Finding]:
                 "mm",
                 f"Only {web:.2f} mm are left between the slots for {a.partner} and {b.partner} in "
                 f"{part.mark}. Use fewer lamellas or a thinner strip.",
+            )
+    for slot in sorted(part.slots, key=lambda s: -s.depth)[:1]:
+        web = part.width - slot.depth
+        if web < part.thickness:
+            yield Finding(
+                "slot-depth",
+                Severity.ERROR,
+                f"{part.mark} {slot.node}",
+                web,
+                part.thickness,
+                "mm",
+                f"The slots of {part.mark} leave {web:.2f} mm of its width, for {slot.partner} as "
+                "elsewhere. Use a smaller depth clearance or a wider strip.",
             )
     for slot in dict.fromkeys(part.slots[:1] + part.slots[-1:]):
         web = min(slot.x, part.length - slot.x) - slot.width / 2.0

@@ -1,12 +1,17 @@
 """The command ``gridshell``: text, degrees and units stop here.
 
-Exit codes: 0 good, 1 findings of severity error, 2 wrong usage or input. Heavy packages are
-imported inside the commands that need them, so that help answers at once.
+Exit codes: 0 good, 1 findings of severity error, 2 wrong usage or input, 70 a fault of the program,
+130 interrupted, 143 terminated. Heavy packages are imported inside the commands that need them, so
+that help answers at once.
 """
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -30,20 +35,57 @@ app.command()(optimize)
 
 _STAGES = 9
 
+
+def _folder(text: str) -> Path:
+    if not text.strip():
+        raise typer.BadParameter("the name of the folder is empty")
+    return Path(text)
+
+
 ProjectFile = Annotated[Path, typer.Argument(metavar="PROJECT.toml", help="The project file.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
 
+def _set_debug(debug: bool) -> None:
+    if debug:
+        os.environ["GRIDSHELL_DEBUG"] = "1"
+
+
+Debug = Annotated[
+    bool,
+    typer.Option(
+        "--debug",
+        callback=_set_debug,
+        help="Show where a fault of the program happened, as GRIDSHELL_DEBUG=1 does.",
+    ),
+]
+
+
+class _TerminatedError(BaseException):
+    """The system asked the command to end."""
+
+
 def main() -> None:
-    """Run the command; mistakes of input end with one message and exit code 2."""
+    """Run the command; whatever goes wrong ends with one message and an exit code."""
     try:
         app()
     except Exception as error:
         from gridshell.errors import GridshellError
 
-        if not isinstance(error, GridshellError):
+        if isinstance(error, GridshellError):
+            _fail(str(error), 2)
+        if isinstance(error, MemoryError):
+            _fail("The net is too large for the memory. Try: fewer lamellas.", 2)
+        if isinstance(error, OSError):
+            _fail(f"The system refused a file or folder ({error}).", 2)
+        if os.environ.get("GRIDSHELL_DEBUG", "") not in ("", "0"):
             raise
-        _fail(str(error), 2)
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        _fail(
+            f"This is a fault of the program, not of the project ({said}). Please report it to the "
+            "developers of gridshell, with the project file and what --debug prints.",
+            70,
+        )
 
 
 @app.callback(invoke_without_command=True)
@@ -60,17 +102,24 @@ def _root(
 @app.command()
 def run(
     project: ProjectFile,
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder to write.")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", "-o", metavar="DIR", parser=_folder, help="Folder to write."),
+    ],
     quiet: Quiet = False,
+    debug: Debug = False,
 ) -> None:
     """Do the whole way: net, lamellas, sheets, STEP, lists and report."""
     from fabrication.project import read_project
 
     content = read_project(project)
     try:
-        report = _run_with_progress(content, out, project.parent, quiet)
+        with _ending_in_order():
+            report = _run_with_progress(content, out, project.parent, quiet)
     except KeyboardInterrupt:
         _fail("Interrupted. Nothing was written.", 130)
+    except _TerminatedError:
+        _fail("Terminated. Nothing was written.", 143)
     if not quiet:
         _summary(report, out)
     if any(finding["severity"] == "error" for finding in report["findings"]):
@@ -78,23 +127,28 @@ def run(
 
 
 @app.command()
-def check(project: ProjectFile, quiet: Quiet = False) -> None:
-    """Read a project file, name what is wrong with it, and list every setting."""
-    from fabrication.project import read_project
+def check(project: ProjectFile, quiet: Quiet = False, debug: Debug = False) -> None:
+    """Read a project file, name what is wrong with it, and print it with every setting."""
+    from fabrication.project import project_text, read_project
 
     content = read_project(project)
     if not quiet:
-        _print_settings(content.model_dump(exclude_none=True))
+        typer.echo(project_text(content), nl=False)
 
 
-def _print_settings(settings: dict[str, Any]) -> None:
-    for key, value in settings.items():
-        if isinstance(value, dict):
-            typer.echo(f"\n[{key}]")
-            for name, entry in value.items():
-                typer.echo(f"{name} = {entry}")
-        else:
-            typer.echo(f"{key} = {value}")
+@contextmanager
+def _ending_in_order() -> Iterator[None]:
+    """Let SIGTERM end the block as Ctrl-C does, so that it can clean up."""
+
+    def end(number: int, frame: object) -> NoReturn:
+        signal.signal(number, signal.SIG_IGN)
+        raise _TerminatedError
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _run_with_progress(project: Any, out: Path, folder: Path, quiet: bool) -> dict[str, Any]:
@@ -109,6 +163,8 @@ def _run_with_progress(project: Any, out: Path, folder: Path, quiet: bool) -> di
         from fabrication.package import run as run_package
 
         def announce(stage: str) -> None:
+            if silent and not quiet:
+                typer.echo(f"gridshell: {stage}", err=True)
             progress.update(task, advance=1, description=stage)
 
         return run_package(project, out, folder=folder, announce=announce)
@@ -117,13 +173,16 @@ def _run_with_progress(project: Any, out: Path, folder: Path, quiet: bool) -> di
 def _summary(report: dict[str, Any], out: Path) -> None:
     from rich.console import Console
 
+    from fabrication.export.words import plural
+
     console = Console(highlight=False, soft_wrap=True)
     built, net, closed = report["structure"], report["net"], report["closure"]
     console.print(f"[bold]{_plain(report['name'])}[/bold]  {net['status']}")
     angle = net["node_angle_deg"]
     console.print(
-        f"  {built['lamellas']} lamellas, {built['joints']} joints, "
-        f"{built['total_length_m']:.1f} m, {built['mass_kg']:.1f} kg on {built['sheets']} sheets; "
+        f"  {plural(built['lamellas'], 'lamella')}, {plural(built['joints'], 'joint')}, "
+        f"{_length(built['total_length_m'])}, {_mass(built['mass_kg'])} on "
+        f"{plural(built['sheets'], 'sheet')}; "
         f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees"
     )
     console.print(
@@ -134,16 +193,31 @@ def _summary(report: dict[str, Any], out: Path) -> None:
     console.print(f"  {sum(report['timing'].values()):.1f} s; written to {_plain(str(out))}")
 
 
+def _length(metres: float) -> str:
+    return f"{metres:.1f} m" if metres >= 1.0 else f"{metres * 1e3:.0f} mm"
+
+
+def _mass(kilograms: float) -> str:
+    return f"{kilograms:.1f} kg" if kilograms >= 1.0 else f"{kilograms * 1e3:.3g} g"
+
+
 def _print_findings(console: Console, findings: list[dict[str, Any]]) -> None:
-    """One line for each kind of finding: the first of its kind, and how many more there are."""
+    """One line for each kind of finding: the worst of its kind, and how many more there are."""
     colours = {"error": "red", "warning": "yellow", "info": "cyan"}
     kinds: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for finding in findings:
         kinds.setdefault((finding["severity"], finding["code"]), []).append(finding)
     for (severity, code), same in kinds.items():
-        line = f"  [{colours[severity]}]{severity}[/] {code}: {_plain(same[0]['message'])}"
+        worst = max(same, key=_excess)
+        line = f"  [{colours[severity]}]{severity}[/] {code}: {_plain(worst['message'])}"
         more = f" And {len(same) - 1} more like this, see report.html." if len(same) > 1 else ""
         console.print(line + more)
+
+
+def _excess(finding: dict[str, Any]) -> float:
+    """How many times a value is over its limit, or under it where it is too small."""
+    low, high = sorted((float(finding["value"]), float(finding["limit"])))
+    return high / low if low > 0.0 else float("inf")
 
 
 def _plain(text: str) -> str:

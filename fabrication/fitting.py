@@ -1,5 +1,7 @@
 """Do the strips go together? The volume two crossing strips share at their nodes.
 
+Strips that meet anywhere else are found by ``collisions``.
+
 Around a node both strips are taken with their drawn slots, as thin solids bent and twisted into
 place, and intersected. The pieces are meshed independently of the CAD solids: a small block of
 cells over the flat outline, two rows high with the slot's cells left out, is moved through the
@@ -15,14 +17,12 @@ from functools import cache
 import manifold3d
 import numpy as np
 
+from fabrication.collisions import slot_reach
 from fabrication.cut import Edge, Slot
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, Indices
-
-_REACH = 2.0
-"""Length of a piece on either side of its slot, in slot widths plus thicknesses."""
 
 _SLICES = 4
 """Cells beside the slot on either side, and in the slot."""
@@ -77,7 +77,7 @@ def slot_pieces(lamella: Lamella, part: FlatPart) -> list[manifold3d.Manifold]:
 
 def _lattice(slot: Slot, part: FlatPart) -> Floats:
     """Corners of the cells around a slot as (x, y through the thickness, height), (k, 3)."""
-    reach = _REACH * (slot.width + part.thickness)
+    reach = slot_reach(slot, part.thickness)
     half, steps = slot.width / 2.0, np.arange(_SLICES) / _SLICES
     x = (
         slot.x

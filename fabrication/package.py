@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
+from itertools import pairwise
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -19,13 +20,15 @@ import fabrication.stock as stock
 import gridshell as gs
 from fabrication.checks import check
 from fabrication.delivery import draft_folder, move_in
+from fabrication.errors import KernelError
 from fabrication.finding import Finding, Severity
 from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.nesting import NestedSheet, nest
 from fabrication.parts import FlatPart, flat_parts
-from fabrication.project import AsymptoticPatchSection, MeshSection, Project
+from fabrication.sections import MeshSection, Project
+from fabrication.settings import patch_of, profile_of, surface_of
 from fabrication.structures import Structure, structure
 
 CLOSURE_LIMIT = 0.05
@@ -37,19 +40,15 @@ VOLUME_LIMIT = 20.0
 CLASH_LIMIT = 1e-3
 """Largest volume two strips may share at a node, mm3."""
 
+FILES = (
+    *("net.json", "net.obj", "parts.csv", "report.html", "report.json", "structure.step"),
+    "sheets/sheet-01.dxf",
+)
+"""What every run makes; there may be more sheets."""
+
 Report = dict[str, Any]
 Announce = Callable[[str], None]
 
-_SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
-    "enneper": gs.Enneper,
-    "catenoid": gs.Catenoid,
-    "helicoid": gs.Helicoid,
-    "hypar": gs.Hypar,
-    "hyperboloid": gs.Hyperboloid,
-    "scherk": gs.Scherk,
-    "torus": gs.Torus,
-    "sphere": gs.Sphere,
-}
 _ANCHORS: dict[str, gs.Anchor] = {
     "free": gs.Free(),
     "boundary-pinned": gs.BoundaryPinned(),
@@ -114,7 +113,7 @@ def run(
     """
     out = Path(out)
     clock = _Clock(announce)
-    with draft_folder(out) as draft, kernel() as cad:
+    with draft_folder(out, names=FILES) as draft, kernel() as cad:
         report = _write(project, _design(project, Path(folder), clock), draft, cad, clock)
         move_in(draft, out, stale=("sheets/sheet-*.dxf",))
     return report
@@ -130,7 +129,7 @@ def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Rep
         result = _optimise(project, control, surface).require()
     with clock.stage("structure"):
         skin = gs.diagonal_meshes(result.control)[0 if project.net.skin == "D1" else 1]
-        built = structure(skin, _profile(project), overhang=project.profile.overhang)
+        built = structure(skin, profile_of(project.profile), overhang=project.profile.overhang)
     with clock.stage("parts"):
         joint = SlotJoint(project.joint.clearance, project.joint.depth_clearance)
         parts = flat_parts(built, joint)
@@ -152,15 +151,8 @@ def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.AnalyticSu
     source = project.source
     if isinstance(source, MeshSection):
         return _mesh_start(source, folder), None
-    sizes = source.surface.model_dump()
-    surface = _SURFACES[sizes.pop("kind")](**sizes)
-    patch = source.patch
-    layout: gs.Patch
-    if isinstance(patch, AsymptoticPatchSection):
-        layout = gs.AsymptoticPatch(patch.p, patch.q, patch.lamellas)
-    else:
-        layout = gs.BisectingPatch(patch.v, patch.cells, patch.u)
-    return gs.control_patch(surface, layout), surface
+    surface = surface_of(source.surface)
+    return gs.control_patch(surface, patch_of(source.patch)), surface
 
 
 def _mesh_start(section: MeshSection, folder: Path) -> gs.ControlMesh:
@@ -179,15 +171,6 @@ def _optimise(
     recipe = gs.a_net(angle=angle, steps=net.steps, tolerance=net.tolerance)
     reference = surface if net.keep_to_surface else None
     return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
-
-
-def _profile(project: Project) -> stock.Profile:
-    section = project.profile
-    if isinstance(section.material, str):
-        material = stock.MATERIALS[section.material]
-    else:
-        material = stock.Material(**section.material.model_dump())
-    return stock.Profile(section.width, section.thickness, material)
 
 
 # ---- files -------------------------------------------------------------------------------------
@@ -218,7 +201,10 @@ def _write(
         write_schedule(draft / "parts.csv", design.parts, design.sheets, material)
         drawn = [part for path in sheet_files for part in read_dxf(path)]
     with clock.stage("solids"):
-        solid = cad.result()
+        try:
+            solid = cad.result()
+        except KernelError as error:
+            raise _with_findings(error, findings, design.parts) from None
     with clock.stage("closure"):
         skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
         net = skins[0 if project.net.skin == "D1" else 1]
@@ -232,7 +218,7 @@ def _write(
             "nodes": len(design.structure.nodes),
             "joints": fitted.nodes,
             "total_length_m": round(sum(p.length for p in design.parts) / 1000.0, 3),
-            "mass_kg": round(sum(mass(p, material) for p in design.parts), 2),
+            "mass_kg": float(f"{sum(mass(p, material) for p in design.parts):.6g}"),
             "max_edgewise_mm": max(p.development.edgewise for p in design.parts),
             "max_edge_strain": max(p.development.edge_strain for p in design.parts),
             "sheets": len(design.sheets),
@@ -249,6 +235,28 @@ def _write(
     }
     _write_reports(project, design, report, draft, clock)
     return report
+
+
+def _with_findings(
+    error: KernelError, findings: Sequence[Finding], parts: Sequence[FlatPart]
+) -> KernelError:
+    """*error* with what the checks found of its lamella, since no report comes, as advice."""
+    part = next((part for part in parts if part.mark == error.where), None)
+    if part is None:
+        return error
+    found = [f for f in findings if f.severity is Severity.ERROR and part.mark in f.where.split()]
+    if found:
+        told = " ".join(f.message for f in found[:3]).rstrip(".")
+        advice = f"to mend what the checks found there: {told}"
+    else:
+        gaps = (b.x - a.x - (a.width + b.width) / 2.0 for a, b in pairwise(part.slots))
+        advice = (
+            f"fewer lamellas or a thinner strip; its slots are {min(gaps, default=0.0):.2f} mm "
+        )
+        advice += "apart at the closest, and the checks found no error in it"
+    return KernelError(
+        error.what, where=error.where, value=error.value, limit=error.limit, advice=advice
+    )
 
 
 def _write_reports(

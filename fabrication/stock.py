@@ -93,6 +93,24 @@ class Profile:
             )
 
 
+def require_web(profile: Profile, depth_clearance: float) -> None:
+    """Refuse slots, half the strip's width and *depth_clearance* mm deep, that cut it through.
+
+    Raises
+    ------
+    SettingError
+        When nothing of the strip is left behind them.
+    """
+    if not depth_clearance < profile.width / 2.0:
+        raise SettingError(
+            "The slots cut the strips through",
+            where="depth_clearance",
+            value=f"{depth_clearance:g} mm",
+            limit=f"below half the strip's width, {profile.width / 2.0:g} mm",
+            advice="0.5 mm",
+        )
+
+
 @dataclass(frozen=True)
 class Sheet:
     """Raw material as it lies on the machine.

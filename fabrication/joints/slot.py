@@ -23,6 +23,7 @@ from fabrication.cut import Edge, Slot
 from fabrication.finding import Finding, Severity
 from fabrication.joints.joint import Joint
 from fabrication.node import Node
+from fabrication.stock import require_web
 from fabrication.structures import Structure
 from gridshell import SettingError
 from gridshell.arrays import Floats
@@ -62,7 +63,14 @@ class SlotJoint(Joint):
                 )
 
     def cuts(self, structure: Structure) -> Mapping[str, tuple[Slot, ...]]:
-        """One slot per node a lamella shares with one of the other family."""
+        """One slot per node a lamella shares with one of the other family.
+
+        Raises
+        ------
+        SettingError
+            When the slots would cut the strips through.
+        """
+        require_web(structure.profile, self.depth_clearance)
         slots: dict[str, list[Slot]] = {lamella.mark: [] for lamella in structure.lamellas}
         regular = [node for node in structure.nodes if node.regular]
         widths = self._widths(structure, regular)

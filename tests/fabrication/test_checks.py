@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import fabrication as fab
+import gridshell as gs
 from fabrication.cut import Edge, Slot
+from gridshell.mesh import grid_quads
 
 ERROR, WARNING, INFO = fab.Severity.ERROR, fab.Severity.WARNING, fab.Severity.INFO
 
@@ -95,6 +97,41 @@ def test_a_strip_that_twists_too_fast_is_an_error(hypar):
         assert f.limit == pytest.approx(middle)
 
 
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_a_strip_whose_edges_its_twist_stretches_too_far_is_an_error(hypar, share):
+    e, width = 200e3, 600.0
+    rate = max(sharpest(one, lambda s, x: s.twist(x)) for one in hypar.structure.lamellas)
+    assert rate == pytest.approx(1.0 / 6000.0, rel=0.05)
+    strength = e * (rate * width) ** 2 / 12.0 / share
+    profile = fab.Profile(width, 2.5, material(strength=strength, modulus=e))
+    found = coded(checked(hypar, profile), "twist-stretch")
+    assert bool(found) == (share > 1.0)
+    for f in found:
+        assert f.severity is ERROR
+        assert f.value == pytest.approx(share * strength, rel=0.01)
+        assert f.limit == strength
+
+
+def test_the_stretch_is_what_is_left_of_the_edge_strain_without_its_mean(hypar):
+    profile = fab.Profile(600.0, 2.5, material(strength=1.0))
+    developed = {one.mark: fab.unroll(one, 600.0) for one in hypar.structure.lamellas}
+    found = coded(checked(hypar, profile), "twist-stretch")
+    assert len(found) == len(developed)
+    for f in found:
+        across = np.linspace(-1.0, 1.0, 100_001)
+        strain = developed[f.where].edge_strain * (across**2 - np.mean(across**2))
+        assert f.value == pytest.approx(200e3 * strain.max(), rel=1e-3)
+
+
+def test_the_advice_names_the_width_that_would_do(hypar):
+    weak = material(strength=2.0)
+    f = coded(checked(hypar, fab.Profile(600.0, 2.5, weak)), "twist-stretch")[0]
+    widest = float(f.message.split("at most ")[1].split(" mm")[0])
+    for width, told in ((widest, False), (widest + 0.2, True)):
+        found = coded(checked(hypar, fab.Profile(width, 2.5, weak)), "twist-stretch")
+        assert (f.where in {one.where for one in found}) == told
+
+
 # ---- bending about the strong axis ----------------------------------------------------------
 
 
@@ -126,6 +163,23 @@ def test_edgewise_bending_below_half_the_strength_is_no_finding(tube):
     assert coded(checked(tube, profile), "edgewise-bend") == []
 
 
+def test_more_lamellas_cure_edgewise_bending_as_the_advice_says():
+    """Half the bay, a quarter of the stress."""
+    stress = []
+    for bays in (6, 12, 24):
+        p = np.linspace(-0.5, 0.5, bays + 1)
+        p, q = np.meshgrid(p, p, indexing="ij")
+        points = gs.Catenoid(4000.0).asymptotic_point(p.ravel(), q.ravel())
+        mesh = gs.QuadMesh(points, grid_quads(bays, bays)[:, ::-1])
+        profile = fab.Profile(100.0, 2.5, material(strength=1e-6))
+        structure = fab.structure(gs.diagonal_meshes(gs.control_mesh(mesh))[0], profile)
+        found = fab.check(structure, fab.flat_parts(structure, fab.SlotJoint()))
+        stress.append(max(f.value for f in coded(found, "edgewise-bend")))
+        assert "Use more lamellas" in coded(found, "edgewise-bend")[0].message
+    ratio = np.array(stress[:-1]) / stress[1:]
+    assert (ratio > 3.0).all()
+
+
 # ---- slots ----------------------------------------------------------------------------------
 
 
@@ -140,6 +194,18 @@ def test_slots_that_leave_less_than_a_thickness_between_them_are_an_error(hypar,
     (found,) = coded(checked(hypar, parts=parts), "slot-spacing")
     assert (found.where, found.severity) == ("A1 N1-N2", ERROR)
     assert (found.value, found.limit) == (pytest.approx(2.4), 2.5)
+
+
+@pytest.mark.parametrize(("spare", "count"), [(2.4, 1), (2.6, 0)])
+def test_a_slot_that_leaves_less_than_a_thickness_behind_it_is_an_error(
+    hypar, with_slots, spare, count
+):
+    slots = [slot(400.0, "N1"), replace(slot(800.0, "N2"), depth=100.0 - spare)]
+    parts = (with_slots(hypar.parts[0], slots), *hypar.parts[1:])
+    found = coded(checked(hypar, parts=parts), "slot-depth")
+    assert [(f.where, f.severity) for f in found] == count * [("A1 N2", ERROR)]
+    for f in found:
+        assert (f.value, f.limit) == (pytest.approx(spare), 2.5)
 
 
 @pytest.mark.parametrize("near_end", [False, True])
@@ -175,17 +241,20 @@ def test_a_short_overhang_is_found(hypar, profile):
 
 UNITS = {
     **{"bend-radius": "mm", "twist": "rad/mm", "edgewise-bend": "N/mm2"},
-    **{"slot-spacing": "mm", "slot-at-end": "mm", "seam": "mm"},
+    **{"twist-stretch": "N/mm2", "slot-depth": "mm"},
+    **{"slot-spacing": "mm", "slot-at-end": "mm", "seam": "mm", "strips-cross": "mm"},
 }
 
 
 def test_every_finding_carries_its_unit_and_names_its_part(tube, saddle, hypar, with_slots):
     weak = fab.Profile(100.0, 2.5, material(strength=1e-3))
     narrow = with_slots(hypar.parts[0], [slot(2.0, "N1"), slot(6.0, "N2"), slot(800.0, "N3")])
+    deep = with_slots(hypar.parts[0], [replace(slot(800.0, "N1"), depth=99.0)])
     found = [
         *checked(tube, weak),
         *checked(saddle, weak),
         *checked(hypar, parts=(narrow, *hypar.parts[1:])),
+        *checked(hypar, parts=(deep, *hypar.parts[1:])),
     ]
     assert {f.code: f.unit for f in found} == UNITS
     for f in found:

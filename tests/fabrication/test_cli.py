@@ -1,8 +1,11 @@
 """The command as people run it: exit codes, and what is said where."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
+import tomllib
 from importlib.metadata import version
 
 import pytest
@@ -62,10 +65,14 @@ def command(monkeypatch, capsys):
     return run
 
 
-def fresh(code, *words):
+def fresh(code, *words, env=None):
     """Run *code* in a new interpreter with *words* as the command's arguments."""
     return subprocess.run(
-        [sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, check=False
+        [sys.executable, "-c", code, *map(str, words)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=env,
     )
 
 
@@ -73,15 +80,15 @@ def fresh(code, *words):
 
 
 def test_a_good_project_ends_with_0_and_tells_what_was_made(command, write, tmp_path):
-    code, out, err = command("run", write(), "--out", tmp_path / "out")
-    assert (code, err) == (0, "")
+    code, out, _ = command("run", write(), "--out", tmp_path / "out")
+    assert code == 0
     for said in (
         "small",
         "Converged",
         "6 lamellas",
         "9 joints",
         "15.2 m",
-        "1 sheets",
+        "on 1 sheet;",
         "node angles",
     ):
         assert said in out
@@ -102,9 +109,16 @@ def test_quiet_says_nothing_at_all_even_from_the_kernel(write, tmp_path):
 def test_check_lists_every_setting_with_its_value(command, write):
     code, out, err = command("check", write())
     assert (code, err) == (0, "")
-    assert {"name = small", "[net]", "steps = 30", "[joint]", "clearance = 0.3"} <= set(
-        out.splitlines()
-    )
+    assert tomllib.loads(out)["net"]["steps"] == 30
+    lines = set(out.splitlines())
+    assert {'name = "small"', "[net]", "[joint]", "clearance = 0.3", "p = [-0.2, 0.2]"} <= lines
+    assert {line.split()[1] for line in lines if line.startswith("#")} == {"angle", "overhang"}
+
+
+def test_what_check_says_is_a_project_that_says_the_same(command, write, tmp_path):
+    _, out, _ = command("check", write('"stainless"', WEAK))
+    (tmp_path / "again.toml").write_text(out, encoding="utf-8")
+    assert command("check", tmp_path / "again.toml") == (0, out, "")
 
 
 def test_a_quiet_check_says_nothing(command, write):
@@ -132,14 +146,14 @@ def test_help_names_the_commands(command):
 
 
 def test_findings_of_severity_error_end_with_1_and_are_told(command, write, tmp_path):
-    code, out, err = command("run", write('"stainless"', WEAK), "--out", tmp_path / "out")
-    assert (code, err) == (1, "")
-    assert out.count("error twist: A1 ") == 1
+    code, out, _ = command("run", write('"stainless"', WEAK), "--out", tmp_path / "out")
+    assert code == 1
+    assert out.count("error twist: ") == 1
     assert "And 5 more like this" in out
     assert (tmp_path / "out" / "structure.step").is_file()
 
 
-def finding(severity, number=0):
+def finding(severity, number=0, **changes):
     return {
         "code": "seam",
         "severity": severity,
@@ -147,6 +161,7 @@ def finding(severity, number=0):
         "value": 1.0,
         "limit": 1.0,
         "message": f"[A{number}] is closed",
+        **changes,
     }
 
 
@@ -154,13 +169,14 @@ def finding(severity, number=0):
 def pretend(monkeypatch):
     """Let a run return a report with given findings, without making anything."""
 
-    def build(*findings):
+    def build(*findings, **built):
         report = {
             "name": "[bold]small[/bold]",
             "net": {"status": "Converged.", "node_angle_deg": {"min": 90.0, "max": 90.0}},
             "structure": {
                 **{"lamellas": 6, "joints": 9, "total_length_m": 1.0, "mass_kg": 1.0},
                 "sheets": 1,
+                **built,
             },
             "closure": {"max_mm": 0.0, "volume_ppm": 0.0},
             "fit": {"clash_mm3": {"max": 0.0}},
@@ -193,6 +209,12 @@ def test_findings_of_one_kind_share_a_line_with_their_count(command, write, pret
     assert out.count("error seam") == 1
 
 
+@pytest.mark.parametrize("values", [[2.0, 9.0, 3.0], [0.5, 0.1, 0.2], [0.5, 0.0, 2.0]])
+def test_the_worst_of_a_kind_is_the_one_that_is_told(command, write, pretend, values):
+    pretend(*(finding("error", i, value=value) for i, value in enumerate(values)))
+    assert "[A1] is closed And 2 more" in command("run", write(), "--out", "out")[1]
+
+
 def test_quiet_errors_still_end_with_1(command, write, pretend):
     pretend(finding("error"))
     assert command("run", write(), "--out", "out", "--quiet") == (1, "", "")
@@ -205,7 +227,12 @@ MISTAKES = [
     ("thickness = 2.5", "thickness = 50.0", "much wider than thick"),
     ("length = 4000.0", "length = 400.0", "too long for the stock (at A1;"),
     ('kind = "hypar"\nscale', 'kind = "sphere"\nradius', "Gaussian curvature"),
-    ("p = [-0.2, 0.2]", "p = [0.2, -0.2]", "smaller first"),
+    ("p = [-0.2, 0.2]", "p = [0.2, -0.2]", "smaller first (at small.toml, patch.p;"),
+    ("lamellas = [3, 3]", "lamellas = [3000, 3000]", "too many nodes"),
+    ("lamellas = [3, 3]", "lamellas = [3, 100000000000000000000]", "patch.lamellas.1"),
+    ("scale = 6000.0", "scale = 1e300", "surface.scale"),
+    ("scale = 6000.0", "scale = 1e-300", "surface.scale"),
+    ('kind = "slot"', 'kind = "slot"\ndepth_clearance = 60.0', "cut the strips through"),
     ("[net]", "[net", "not TOML"),
 ]
 
@@ -218,8 +245,9 @@ def test_a_mistake_ends_with_2_and_one_message_that_names_it(
     code, out, err = command("run", path, "--out", tmp_path / "out")
     assert (code, out) == (2, "")
     assert err.startswith("gridshell: ")
-    assert err.count("\n") == 1
-    assert said in err
+    *stages, message = err.replace(f"{tmp_path}/", "").splitlines()
+    assert {line.split(": ")[0] for line in stages} <= {"gridshell"}
+    assert said in message
     assert "Traceback" not in err
     assert list(tmp_path.iterdir()) == [path]
 
@@ -245,14 +273,107 @@ def test_wrong_usage_ends_with_2_on_stderr(command, words):
     assert "Traceback" not in err
 
 
-def test_a_mistake_in_the_program_itself_is_not_hidden(monkeypatch, write, tmp_path):
-    def broken(*args, **kwargs):
-        raise ZeroDivisionError
+@pytest.mark.parametrize("name", ["", " "])
+def test_an_output_without_a_name_is_refused(command, write, name):
+    code, out, err = command("run", write(), "--out", name)
+    assert (code, out) == (2, "")
+    assert "--out" in err
+    assert "empty" in err
 
-    monkeypatch.setattr("fabrication.package.run", broken)
-    monkeypatch.setattr(sys, "argv", ["gridshell", "run", str(write()), "--out", "out"])
+
+# ---- faults of the program ------------------------------------------------------------------
+
+
+@pytest.fixture
+def broken(monkeypatch, command, write):
+    """Let a run end with an error."""
+
+    def build(error, *words):
+        def fail(*args, **kwargs):
+            raise error
+
+        monkeypatch.setattr("fabrication.package.run", fail)
+        monkeypatch.setenv("GRIDSHELL_DEBUG", "")
+        return command("run", write(), "--out", "out", "--quiet", *words)
+
+    return build
+
+
+def test_a_fault_of_the_program_is_told_in_one_line_and_ends_with_70(broken):
+    code, out, err = broken(ZeroDivisionError("float\ndivision"))
+    assert (code, out, err.count("\n")) == (70, "", 1)
+    for said in (
+        "fault of the program",
+        "(ZeroDivisionError: float division)",
+        "--debug",
+        "report",
+    ):
+        assert said in err
+
+
+def test_debug_shows_where_a_fault_happened(broken):
     with pytest.raises(ZeroDivisionError):
-        cli.main()
+        broken(ZeroDivisionError("where"), "--debug")
+
+
+def test_a_setting_of_the_shell_shows_where_a_fault_happened(write):
+    code = (
+        "import fabrication.package as package; package.run = None\n"
+        "from fabrication.cli import main; main()"
+    )
+    words = ["run", write(), "--out", "out", "--quiet"]
+    for value, shown in (("1", True), ("0", False)):
+        done = fresh(code, *words, env={**os.environ, "GRIDSHELL_DEBUG": value})
+        assert ("Traceback" in done.stderr) == shown
+
+
+def test_a_net_too_large_for_the_memory_ends_with_2(broken):
+    code, _, err = broken(MemoryError())
+    assert code == 2
+    assert "too large for the memory" in err
+
+
+def test_a_full_disk_is_no_fault_of_the_program(broken):
+    code, _, err = broken(OSError(28, "No space left on device"))
+    assert code == 2
+    assert "No space left on device" in err
+
+
+# ---- progress and figures -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("words", "lines"), [([], 2), (["--quiet"], 0)])
+def test_stages_are_lines_where_there_is_no_terminal(
+    command, write, pretend, monkeypatch, words, lines
+):
+    pretend()
+    from fabrication import package
+
+    report = package.run()
+
+    def run(*args, announce, **kwargs):
+        announce("optimise")
+        announce("fit")
+        return report
+
+    monkeypatch.setattr(package, "run", run)
+    err = command("run", write(), "--out", "out", *words)[2]
+    assert err.splitlines() == ["gridshell: optimise", "gridshell: fit"][:lines]
+
+
+@pytest.mark.parametrize(
+    ("kilograms", "said"), [(62.41, "62.4 kg"), (1.0, "1.0 kg"), (0.00597, "5.97 g")]
+)
+def test_small_masses_are_told_in_grams(command, write, pretend, kilograms, said):
+    pretend(mass_kg=kilograms, joints=1)
+    out = command("run", write(), "--out", "out")[1]
+    assert f", {said} on 1 sheet;" in out
+    assert " 1 joint," in out
+
+
+def test_short_lengths_are_told_in_mm(command, write, pretend):
+    pretend(total_length_m=0.62)
+    assert ", 620 mm, " in command("run", write(), "--out", "out")[1]
 
 
 # ---- interrupted ----------------------------------------------------------------------------
@@ -282,6 +403,34 @@ def test_an_interrupted_run_says_so(interrupted):
     assert "Interrupted. Nothing was written." in err
 
 
+TERMINATED = """
+import os, signal
+import fabrication.package as package
+fit = package.fit
+def stop(*args):
+    os.kill(os.getpid(), signal.SIGTERM)
+    return fit(*args)
+package.fit = stop
+from fabrication.cli import main
+main()
+"""
+
+
+def test_a_terminated_run_leaves_nothing_and_ends_with_143(write, tmp_path):
+    path = write()
+    done = fresh(TERMINATED, "run", path, "--out", tmp_path / "jobs" / "out", "--quiet")
+    assert (done.returncode, done.stdout) == (143, "")
+    assert done.stderr == "gridshell: Terminated. Nothing was written.\n"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_sigterm_does_is_as_before_after_a_run(command, write, pretend):
+    pretend()
+    before = signal.getsignal(signal.SIGTERM)
+    command("run", write(), "--out", "out")
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
 # ---- what is loaded -------------------------------------------------------------------------
 
 LOADED = """
@@ -291,7 +440,7 @@ try:
     main()
 except SystemExit as stopped:
     assert not stopped.code, stopped.code
-heavy = {"OCP", "cadquery", "build123d", "scipy"} & set(sys.modules)
+heavy = {"OCP", "cadquery", "build123d", "scipy", "plotly", "ezdxf"} & set(sys.modules)
 print("loaded:", sorted(heavy))
 """
 

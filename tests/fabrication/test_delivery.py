@@ -165,9 +165,28 @@ def test_an_interrupt_while_moving_leaves_the_earlier_run_as_it_was(tmp_path, re
 def test_a_file_where_a_folder_must_be_is_an_error_and_stays(tmp_path):
     fill(tmp_path / "out", ["net.json", "sheets"], "mine")
     before = tree(tmp_path)
-    with pytest.raises(OutputError, match="cannot be written"):
+    with pytest.raises(OutputError, match="a file is where a folder must be") as info:
         deliver(tmp_path / "out")
+    assert info.value.where == str(tmp_path / "out" / "sheets")
     assert tree(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", ["structure.step", "sheets/sheet-02.dxf"])
+@pytest.mark.parametrize("content", [[], ["notes.txt"]])
+def test_a_folder_where_a_file_must_be_is_an_error_and_stays(tmp_path, name, content):
+    (tmp_path / "out" / name).mkdir(parents=True)
+    fill(tmp_path / "out" / name, content, "mine")
+    before = tree(tmp_path)
+    with pytest.raises(OutputError, match="a folder is where a file must be") as info:
+        deliver(tmp_path / "out")
+    assert info.value.where == str(tmp_path / "out" / name)
+    assert tree(tmp_path) == before
+
+
+def test_a_folder_named_like_an_old_sheet_stays(tmp_path):
+    fill(tmp_path / "out", ["sheets/sheet-07.dxf/notes.txt"], "mine")
+    deliver(tmp_path / "out")
+    assert (tmp_path / "out/sheets/sheet-07.dxf/notes.txt").read_text() == "mine"
 
 
 # ---- what is refused before any work --------------------------------------------------------
@@ -179,6 +198,19 @@ def test_a_file_is_no_folder(tmp_path):
         pytest.fail("nothing may be drafted")
     assert info.value.where == str(tmp_path / "out")
     assert tree(tmp_path) == {"out": "mine"}
+
+
+@pytest.mark.parametrize(
+    ("there", "named"), [("sheets", "sheets"), ("structure.step/notes.txt", "structure.step")]
+)
+def test_places_of_known_files_are_looked_at_before_any_work(tmp_path, there, named):
+    fill(tmp_path / "out", [there], "mine")
+    with (
+        pytest.raises(OutputError, match="cannot be written") as info,
+        draft_folder(tmp_path / "out", names=OURS),
+    ):
+        pytest.fail("nothing may be drafted")
+    assert info.value.where == str(tmp_path / "out" / named)
 
 
 def test_a_folder_below_a_file_cannot_be_made(tmp_path):

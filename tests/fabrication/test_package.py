@@ -9,7 +9,7 @@ import fabrication as fab
 import gridshell as gs
 from fabrication import package
 from fabrication.cut import area
-from fabrication.errors import OutputError, StockError
+from fabrication.errors import KernelError, OutputError, StockError
 from gridshell.mesh import grid_quads
 
 pytestmark = [pytest.mark.xdist_group("kernel"), pytest.mark.usefixtures("kernel_here")]
@@ -225,7 +225,7 @@ def test_a_sheet_of_one_s_own_is_used(special):
 
 
 def test_a_bad_design_is_still_built_and_its_findings_are_in_the_report(tmp_path):
-    weak = {"name": "weak", "modulus": 200e3, "strength": 1.0, "density": 7900.0}
+    weak = {"name": "weak", "modulus": 200e3, "strength": 10.0, "density": 7900.0}
     profile = {"width": 100.0, "thickness": 2.5, "material": weak}
     report = fab.run(project(profile=profile), tmp_path)
     found = report["findings"]
@@ -252,6 +252,62 @@ def test_files_that_do_not_close_are_findings_of_severity_error():
         ("clash", "N3", 0.002, 0.001),
     ]
     assert {f.severity for f in found} == {fab.Severity.ERROR}
+
+
+def test_a_small_mass_keeps_its_digits(tmp_path):
+    tiny = {"width": 4.0, "thickness": 0.2, "material": "stainless"}
+    report = fab.run(project(surface={"kind": "hypar", "scale": 100.0}, profile=tiny), tmp_path)
+    control = gs.read_net(tmp_path / "net.json")
+    structure = fab.structure(gs.diagonal_meshes(control)[0], fab.Profile(4.0, 0.2, fab.STAINLESS))
+    areas = [part.area for part in fab.flat_parts(structure, fab.SlotJoint())]
+    kilograms = sum(areas) * 0.2 * 7900.0e-9
+    assert kilograms < 0.01
+    assert report["structure"]["mass_kg"] == pytest.approx(kilograms, rel=1e-5)
+
+
+@pytest.fixture
+def refusing(monkeypatch):
+    """Let the CAD kernel refuse a lamella, or fail at all."""
+
+    def build(where):
+        class Refusing:
+            def __init__(self, folder):
+                pass
+
+            def order(self, *args, **kwargs):
+                pass
+
+            def result(self):
+                raise KernelError("Refused", where=where, value="1", limit="2", advice="none")
+
+            def end(self):
+                pass
+
+        monkeypatch.setattr("fabrication.kernel_job.Kernel", Refusing)
+
+    return build
+
+
+def test_a_lamella_the_kernel_refuses_is_told_with_what_the_checks_found(fails, refusing):
+    refusing("A1")
+    weak = {"name": "weak", "modulus": 200e3, "strength": 10.0, "density": 7900.0}
+    error = fails(project(profile={**SMALL["profile"], "material": weak}), KernelError)
+    assert (error.what, error.where, error.value, error.limit) == ("Refused", "A1", "1", "2")
+    assert "A1 twists by" in error.advice
+    assert "A2" not in error.advice
+
+
+def test_a_lamella_the_kernel_refuses_without_a_finding_is_told_with_its_slots(fails, refusing):
+    refusing("B2")
+    error = fails(project(), KernelError)
+    distance = float(error.advice.split("slots are ")[1].split(" mm")[0])
+    assert distance == pytest.approx(1200.0, abs=100.0)
+    assert "no error" in error.advice
+
+
+def test_a_kernel_that_fails_at_all_keeps_its_words(fails, refusing):
+    refusing(None)
+    assert fails(project(), KernelError).advice == "none"
 
 
 class AskedError(Exception):
@@ -504,8 +560,10 @@ def test_an_output_below_a_file_is_refused(tmp_path):
     assert content(tmp_path) == {"jobs": b"mine"}
 
 
-def test_an_output_that_is_refused_costs_no_work(tmp_path):
-    (tmp_path / "out").write_text("mine")
+@pytest.mark.parametrize("name", ["out", "out/sheets"])
+def test_an_output_that_is_refused_costs_no_work(tmp_path, name):
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("mine")
     stages = []
     with pytest.raises(OutputError):
         fab.run(project(), tmp_path / "out", announce=stages.append)

@@ -3,7 +3,7 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.stock import MATERIALS
+from fabrication.stock import MATERIALS, require_web
 
 
 @pytest.mark.parametrize("key", ["modulus", "strength", "density"])
@@ -32,6 +32,18 @@ def test_a_profile_thicker_than_a_third_of_its_width_is_no_strip():
 
 def test_a_profile_of_exactly_a_third_is_one():
     assert fab.Profile(width=30.0, thickness=10.0, material=fab.S235).thickness == 10.0
+
+
+@pytest.mark.parametrize(("clearance", "left"), [(39.99, True), (40.0, False), (60.0, False)])
+def test_slots_must_leave_something_of_a_strip(clearance, left):
+    profile = fab.Profile(width=80.0, thickness=2.0, material=fab.S235)
+    if left:
+        require_web(profile, clearance)
+        return
+    with pytest.raises(gs.SettingError, match="cut the strips through") as info:
+        require_web(profile, clearance)
+    assert (info.value.where, info.value.value) == ("depth_clearance", f"{clearance:g} mm")
+    assert "40 mm" in info.value.limit
 
 
 @pytest.mark.parametrize("key", ["length", "width"])

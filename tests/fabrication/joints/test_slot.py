@@ -131,6 +131,18 @@ def test_a_negative_clearance_is_refused(key, value):
     assert info.value.where == key
 
 
+@pytest.mark.parametrize("depth", [50.0, 60.0])
+def test_slots_that_cut_the_strips_through_are_refused(hypar, depth):
+    with pytest.raises(gs.SettingError, match="cut the strips through") as info:
+        fab.SlotJoint(depth_clearance=depth).cuts(hypar.structure)
+    assert (info.value.where, info.value.value) == ("depth_clearance", f"{depth:g} mm")
+    assert "50 mm" in info.value.limit
+
+
+def test_slots_that_leave_a_thread_are_cut(hypar):
+    assert drawn(hypar, fab.SlotJoint(depth_clearance=49.99))
+
+
 def drawn(design, joint):
     return {
         (mark, slot.node): slot

@@ -1,0 +1,184 @@
+"""What the sections of a project stand for, and whether they go together.
+
+Everything here is cheap: neither the CAD kernel nor scipy is loaded, no net is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+import fabrication.stock as stock
+import gridshell as gs
+from fabrication.errors import ProjectError
+from fabrication.sections import (
+    MOST_NODES,
+    AsymptoticPatchSection,
+    MeshSection,
+    PatchSection,
+    ProfileSection,
+    Project,
+    SurfaceSection,
+    SurfaceSource,
+)
+from gridshell.arrays import Floats
+
+LARGEST = 1e7
+"""No point of a patch is farther than this from the origin along an axis, mm."""
+
+_SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
+    "enneper": gs.Enneper,
+    "catenoid": gs.Catenoid,
+    "helicoid": gs.Helicoid,
+    "hypar": gs.Hypar,
+    "hyperboloid": gs.Hyperboloid,
+    "scherk": gs.Scherk,
+    "torus": gs.Torus,
+    "sphere": gs.Sphere,
+}
+
+
+def surface_of(section: SurfaceSection) -> gs.AnalyticSurface:
+    """The surface of ``[surface]``."""
+    sizes = section.model_dump()
+    return _SURFACES[sizes.pop("kind")](**sizes)
+
+
+def patch_of(section: PatchSection) -> gs.Patch:
+    """The layout of ``[patch]``."""
+    if isinstance(section, AsymptoticPatchSection):
+        return gs.AsymptoticPatch(section.p, section.q, section.lamellas)
+    return gs.BisectingPatch(section.v, section.cells, section.u)
+
+
+def profile_of(section: ProfileSection) -> stock.Profile:
+    """The strip of ``[profile]``."""
+    if isinstance(section.material, str):
+        material = stock.MATERIALS[section.material]
+    else:
+        material = stock.Material(**section.material.model_dump())
+    return stock.Profile(section.width, section.thickness, material)
+
+
+def require_makeable(project: Project, path: Path) -> None:
+    """Refuse what can be told to fail before a net is made.
+
+    Parameters
+    ----------
+    project : from the file *path*; a mesh file is looked for beside it.
+
+    Raises
+    ------
+    ProjectError
+        Naming the file and the key.
+    """
+    with _placed(path, "profile"):
+        profile = profile_of(project.profile)
+    with _placed(path, "joint"):
+        stock.require_web(profile, project.joint.depth_clearance)
+    with _placed(path, "sheet"):
+        sheet = stock.Sheet(**project.sheet.model_dump())
+    room = sheet.width - 2.0 * sheet.margin
+    if profile.width > room:
+        raise ProjectError(
+            "The strip is wider than the sheet",
+            where=f"{path}, profile.width",
+            value=f"{profile.width:g} mm",
+            limit=f"{room:g} mm between the sheet's margins",
+            advice="a wider sheet, or a narrower strip",
+        )
+    source = project.source
+    if isinstance(source, MeshSection):
+        _require_file(source, path)
+    else:
+        _require_patch(source, path)
+
+
+def _require_file(section: MeshSection, path: Path) -> None:
+    mesh = path.parent / section.file
+    if not mesh.is_file():
+        raise ProjectError(
+            "The mesh file is not there",
+            where=f"{path}, mesh.file",
+            value=str(mesh),
+            advice="a path from the folder of the project file",
+        )
+
+
+def _require_patch(source: SurfaceSource, path: Path) -> None:
+    with _placed(path, "surface"):
+        surface = surface_of(source.surface)
+    with _placed(path, "patch"):
+        patch = patch_of(source.patch)
+    if isinstance(patch, gs.BisectingPatch) and patch.u is None and surface.period_u is None:
+        raise ProjectError(
+            "This surface does not close into a ring",
+            where=f"{path}, patch.u",
+            value=type(surface).__name__,
+            advice="give u = [first, last], or use a surface of revolution",
+        )
+    _require_count(surface, patch, path)
+    if isinstance(surface, gs.Torus):
+        return  # its elliptic functions are scipy's
+    u, v = _corners(surface, patch)
+    with _placed(path, "patch"), np.errstate(all="ignore"):
+        surface.require_hyperbolic(u, v)
+        far = float(np.abs(surface.point(u, v)).max())
+    if not far <= LARGEST:
+        raise ProjectError(
+            "The patch is too large",
+            where=f"{path}, patch",
+            value=f"a corner {far:.3g} mm from the origin",
+            limit=f"{LARGEST:g} mm",
+            advice="check the sizes, which are mm, and the ranges, which are pure numbers",
+        )
+
+
+def _require_count(surface: gs.AnalyticSurface, patch: gs.Patch, path: Path) -> None:
+    if isinstance(patch, gs.AsymptoticPatch):
+        key, value, nodes = "lamellas", list(patch.lamellas), float(np.prod(patch.lamellas))
+    else:
+        first, last = patch.u or (0.0, surface.period_u or 0.0)
+        across = max(2.0, (patch.v[1] - patch.v[0]) * patch.cells / (last - first))
+        key, value, nodes = "cells", [patch.cells], patch.cells * (across + 1.0) / 2.0
+    if nodes > MOST_NODES:
+        raise ProjectError(
+            "The net has too many nodes",
+            where=f"{path}, patch.{key}",
+            value=f"{value}, about {nodes:.3g} nodes",
+            limit=f"{MOST_NODES} nodes",
+            advice=f"fewer {key}",
+        )
+
+
+def _corners(surface: gs.AnalyticSurface, patch: gs.Patch) -> tuple[Floats, Floats]:
+    """Parameters (u, v), each (5,), of the corners of *patch* and its middle."""
+    if isinstance(patch, gs.AsymptoticPatch):
+        p, q = (np.append(x, x.mean()) for x in _rectangle(patch.p, patch.q))
+        return (p + q) / 2.0, (p - q) / 2.0
+    u, v = _rectangle(patch.u or (0.0, surface.period_u or 0.0), patch.v)
+    return np.append(u, u.mean()), np.append(v, v.mean())
+
+
+def _rectangle(first: tuple[float, float], second: tuple[float, float]) -> tuple[Floats, Floats]:
+    a, b = np.meshgrid(first, second)
+    return a.ravel(), b.ravel()
+
+
+@contextmanager
+def _placed(path: Path, section: str) -> Iterator[None]:
+    """Add the file and the section to the place an error names."""
+    try:
+        yield
+    except gs.InputError as error:
+        at = error.where or ""
+        raise ProjectError(
+            error.what,
+            where=f"{path}, {section}.{at}" if at.isidentifier() else f"{path}, {section}: {at}",
+            value=error.value,
+            limit=error.limit,
+            advice=error.advice,
+        ) from None
