@@ -26,6 +26,7 @@ from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.nesting import NestedSheet, nest
+from fabrication.net_checks import check_net
 from fabrication.parts import FlatPart, flat_parts
 from fabrication.sections import MeshSection, Project
 from fabrication.settings import patch_of, profile_of, surface_of
@@ -127,6 +128,10 @@ def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Rep
         control, surface = start(project, folder)
     with clock.stage("optimise"):
         result = _optimise(project, control, surface).require()
+        kind = gs.Planarity.DIAGONAL_STARS
+        quality = gs.net_quality(
+            result.control, planarity=kind, angle=_angle(project), reference=surface
+        )
     with clock.stage("structure"):
         skin = gs.diagonal_meshes(result.control)[0 if project.net.skin == "D1" else 1]
         built = structure(skin, profile_of(project.profile), overhang=project.profile.overhang)
@@ -135,13 +140,15 @@ def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Rep
         parts = flat_parts(built, joint)
         sheet = stock.Sheet(**project.sheet.model_dump())
         sheets = nest(parts, sheet)
-        findings = [*joint.findings(built), *check(built, parts)]
+        about_net = check_net(result, quality, kept=project.net.keep_to_surface)
+        findings = [*about_net, *joint.findings(built), *check(built, parts)]
     design = _Design(result.control, skin, built, parts, sheets)
-    return design, _net_report(result, clock.seconds["optimise"]), findings
+    seconds = clock.seconds["optimise"]
+    return design, gs.net_report(result, kind, seconds=seconds, quality=quality), findings
 
 
-def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.AnalyticSurface | None]:
-    """The control mesh a project begins with, and its surface where it has one.
+def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.Surface]:
+    """The control mesh a project begins with and its surface: of a mesh file, the mesh itself.
 
     Raises
     ------
@@ -150,27 +157,29 @@ def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.AnalyticSu
     """
     source = project.source
     if isinstance(source, MeshSection):
-        return _mesh_start(source, folder), None
+        return _mesh_start(source, folder)
     surface = surface_of(source.surface)
     return gs.control_patch(surface, patch_of(source.patch)), surface
 
 
-def _mesh_start(section: MeshSection, folder: Path) -> gs.ControlMesh:
+def _mesh_start(section: MeshSection, folder: Path) -> tuple[gs.ControlMesh, gs.Surface]:
     mesh = gs.read_obj(folder / section.file, unit=gs.Unit.named(section.unit))
     along_edges = section.lamellas_along == "edges"
     control = gs.control_mesh(mesh) if along_edges else gs.as_control_mesh(mesh)
+    gs.require_sound(mesh)
     gs.require_hyperbolic(control.mesh)
-    return control
+    return control, gs.TriangulatedSurface.of_quads(mesh.vertices, mesh.quads)
 
 
-def _optimise(
-    project: Project, control: gs.ControlMesh, surface: gs.AnalyticSurface | None
-) -> gs.OptimizedNet:
+def _optimise(project: Project, control: gs.ControlMesh, surface: gs.Surface) -> gs.OptimizedNet:
     net = project.net
-    angle = None if net.angle is None else radians(net.angle)
-    recipe = gs.a_net(angle=angle, steps=net.steps, tolerance=net.tolerance)
+    recipe = gs.a_net(angle=_angle(project), steps=net.steps, tolerance=net.tolerance)
     reference = surface if net.keep_to_surface else None
     return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
+
+
+def _angle(project: Project) -> float | None:
+    return None if project.net.angle is None else radians(project.net.angle)
 
 
 # ---- files -------------------------------------------------------------------------------------
@@ -276,26 +285,6 @@ def _write_reports(
         )
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")
-
-
-def _net_report(result: gs.OptimizedNet, seconds: float) -> Report:
-    quality = result.quality
-    low, high = quality.edge_ratio
-    angle_low, angle_high = quality.node_angle_deg
-    return {
-        "kind": "asymptotic",
-        "vertices": int((result.control.mesh.valence > 0).sum()),
-        "faces": len(result.control.quads),
-        "iterations": len(result.steps),
-        "seconds": seconds,
-        "status": result.status,
-        "angle_error_deg": quality.angle_error_deg and asdict(quality.angle_error_deg),
-        "node_angle_deg": {"min": angle_low, "max": angle_high},
-        "star_planarity": quality.star_planarity and asdict(quality.star_planarity),
-        "edge_ratio": {"min": low, "max": high},
-        "surface_distance_mm": quality.surface_distance_mm and asdict(quality.surface_distance_mm),
-        "curvature_ratio": quality.curvature_ratio,
-    }
 
 
 def _loop_findings(closed: Report, fitted: Fit) -> list[Finding]:

@@ -8,7 +8,7 @@ unknowns, constant fairness, ten steps), kept to compare with.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from math import pi
 from typing import Protocol
@@ -40,6 +40,7 @@ from gridshell.folding import NoFolding
 from gridshell.mesh import ControlMesh, Stars, diagonal_stars, edge_stars
 from gridshell.pose import Pose
 from gridshell.solve import Constraint, Guard, Problem, Stop, Term, Weight
+from gridshell.surface import Surface
 
 
 class Planarity(Enum):
@@ -136,7 +137,7 @@ class NetRecipe:
         terms = [
             *_planar_terms(control, self.planarity),
             *_angle_terms(pose, self.planarity, self.angle, lag_lengths=False),
-            Term("fairness", self.fairness, Fairness(triples, target)),
+            Term("fairness", self._fairness_beside(pose.reference), Fairness(triples, target)),
         ]
         if self.rhombus:
             goal = EqualDiagonals(control.quads)
@@ -146,6 +147,12 @@ class NetRecipe:
         terms += [condition.term(pose) for condition in self.conditions]
         terms += _proximity_terms(pose, self.proximity)
         return _problem(pose, start, terms, NoFolding(pose.control.mesh)), start
+
+    def _fairness_beside(self, reference: Surface | None) -> Weight:
+        """Lowered no faster than proximity: held to a surface alone, a net slides together."""
+        if reference is None or not self.keep_shape:
+            return self.fairness
+        return replace(self.fairness, decay=max(self.fairness.decay, self.proximity.decay))
 
 
 @dataclass(frozen=True, eq=False)

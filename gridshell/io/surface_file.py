@@ -11,6 +11,17 @@ from gridshell.errors import FileError
 from gridshell.io.obj import Unit
 from gridshell.surface import TriangulatedSurface
 
+_UNREADABLE = (
+    ValueError,
+    TypeError,
+    AttributeError,
+    IndexError,
+    KeyError,
+    OSError,
+    NotImplementedError,
+)
+"""What trimesh raises for files it cannot make sense of."""
+
 
 def read_surface(path: Path | str, *, unit: Unit) -> TriangulatedSurface:
     """Read a mesh (OBJ, PLY, STL, GLB) as a surface; faces of more corners are cut to triangles.
@@ -34,12 +45,14 @@ def read_surface(path: Path | str, *, unit: Unit) -> TriangulatedSurface:
         loaded: Any = trimesh.load_mesh(str(path), process=False)
         vertices = np.asarray(loaded.vertices, dtype=np.float64)
         faces = np.asarray(loaded.faces, dtype=np.int64)
-    except (ValueError, TypeError, AttributeError, IndexError, KeyError, OSError) as error:
+    except _UNREADABLE as error:
         raise FileError(
             "The surface file cannot be read",
             where=str(path),
             value=str(error) or type(error).__name__,
             limit="OBJ, PLY, STL or GLB with faces",
         ) from None
+    if len(faces) == 0:
+        raise FileError("The surface file cannot be read", where=str(path), value="no faces")
     used, compact = np.unique(faces, return_inverse=True)
     return TriangulatedSurface(vertices[used] * unit.value, compact.reshape(-1, 3))

@@ -345,7 +345,8 @@ def test_the_anchor_is_the_one_that_is_named(asked, name, anchor):
 
 def test_the_recipe_has_the_project_s_angle_steps_and_tolerance(asked):
     recipe, _, _ = asked(angle=60.0, steps=12, tolerance=1e-7)
-    assert recipe == gs.a_net(angle=np.pi / 3.0, steps=12, tolerance=1e-7)
+    wanted = gs.a_net(angle=np.pi / 3.0, steps=12, tolerance=1e-7)
+    assert vars(recipe) == vars(wanted)
 
 
 @pytest.mark.parametrize(("keep", "reference"), [(True, gs.Hypar(6000.0)), (False, None)])
@@ -359,7 +360,40 @@ def test_the_angle_that_is_asked_for_is_built(tmp_path):
     report = fab.run(project(net=net, surface=enneper), tmp_path)
     assert report["net"]["angle_error_deg"]["max"] < 1e-4
     assert report["net"]["node_angle_deg"] == pytest.approx({"min": 60.0, "max": 60.0}, abs=1e-4)
-    assert report["net"]["surface_distance_mm"] is None
+    assert report["net"]["surface_distance_mm"]["max"] > 100.0
+    assert "off-surface" not in {finding["code"] for finding in report["findings"]}
+
+
+def test_a_net_that_leaves_the_surface_it_shall_keep_to_is_a_finding(tmp_path):
+    net = {"anchor": "free", "angle": 75.0, "keep_to_surface": True, "steps": 60}
+    enneper = {"kind": "enneper", "scale": 4000.0}
+    report = fab.run(project(net=net, surface=enneper), tmp_path)
+    (found,) = (f for f in report["findings"] if f["code"] == "off-surface")
+    assert found["value"] == report["net"]["surface_distance_mm"]["max"]
+    assert found["value"] > found["limit"] > 0.0
+    assert found["severity"] == "warning"
+
+
+def test_a_mesh_that_does_not_carry_the_net_is_refused_and_not_flattened(tmp_path):
+    """A saddle whose edges are asymptotic, taken by its diagonals with a free boundary."""
+    x, y = np.meshgrid(np.linspace(-4, 4, 13), np.linspace(-4, 4, 13), indexing="ij")
+    points = np.stack([x, y, x * y / 8.0], axis=-1).reshape(-1, 3) * 1e3
+    in_metres(tmp_path / "roof.obj", gs.QuadMesh(points, grid_quads(12, 12)))
+    mesh = {"file": "roof.obj", "unit": "m", "lamellas_along": "diagonals"}
+    net = {"anchor": "free", "keep_to_surface": False}
+    with pytest.raises(gs.SolveError, match="does not carry this net"):
+        fab.run(
+            project(surface=None, patch=None, mesh=mesh, net=net), tmp_path / "out", folder=tmp_path
+        )
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_mesh_is_its_own_surface_to_keep_to(tmp_path):
+    patch = gs.BisectingPatch(v=(-0.3, 0.3), cells=8, u=(0.0, 0.6))
+    control = gs.control_patch(gs.Catenoid(4000.0), patch)
+    in_metres(tmp_path / "roof.obj", control.mesh)
+    report = fab.run(from_mesh("diagonals"), tmp_path / "out", folder=tmp_path)
+    assert report["net"]["surface_distance_mm"]["max"] < 20.0
 
 
 # ---- nets from files ------------------------------------------------------------------------
@@ -381,7 +415,7 @@ def test_edges_of_an_exact_hypar_become_straight_lamellas(tmp_path):
     in_metres(tmp_path / "roof.obj", gs.QuadMesh(points, grid_quads(6, 6)))
     report = fab.run(from_mesh("edges"), tmp_path / "out", folder=tmp_path)
     assert report["findings"] == []
-    assert report["net"]["surface_distance_mm"] is None
+    assert report["net"]["surface_distance_mm"]["max"] < 1e-6
     assert report["structure"]["max_edgewise_mm"] < 1e-6
     assert report["structure"]["total_length_m"] > 10.0
 

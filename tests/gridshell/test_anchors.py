@@ -85,9 +85,20 @@ def test_free_holds_nothing(grid):
     assert (found.vertices.tolist(), found.terms) == ([], ())
 
 
-def test_pinned_holds_the_named_vertices_once_and_sorted(grid):
-    found = hold(gs.Pinned((5, 2, 5)), gs.as_control_mesh(grid(3, 3)))
+def test_pinned_holds_the_named_vertices_sorted(grid):
+    found = hold(gs.Pinned((5, 2)), gs.as_control_mesh(grid(3, 3)))
     assert (found.vertices.tolist(), found.terms) == ([2, 5], ())
+
+
+def test_pinning_a_vertex_twice_is_refused_by_its_index(grid):
+    with pytest.raises(gs.SettingError, match="pinned twice") as info:
+        hold(gs.Pinned((5, 2, 5)), gs.as_control_mesh(grid(3, 3)))
+    assert info.value.where == "vertices, vertex 5"
+
+
+def test_on_a_coarser_mesh_pins_follow_their_vertices():
+    assert gs.Pinned((8, 2)).restricted(np.array([0, 2, 4, 8])).vertices == (1, 3)
+    assert gs.BoundaryGlide().restricted(np.array([0, 2])) == gs.BoundaryGlide()
 
 
 def test_pinning_no_vertex_is_free(grid):

@@ -435,3 +435,163 @@ def test_a_mesh_whose_vertices_coincide_is_refused():
     control = gs.as_control_mesh(gs.QuadMesh(np.zeros((4, 3)), np.array([[0, 1, 2, 3]])))
     with pytest.raises(gs.MeshError, match="coincide"):
         gs.optimize(control, gs.a_net(), anchor=gs.Free())
+
+
+# ---- other nets than the asymptotic one on diagonals ----------------------------------------
+
+
+def quads_over(height, m=14, n=16, size=1000.0):
+    x, y = np.meshgrid(np.linspace(-1, 1, m + 1), np.linspace(-1, 1, n + 1), indexing="ij")
+    points = np.stack([x, y * n / m, height(x, y)], axis=-1).reshape(-1, 3)
+    return gs.as_control_mesh(gs.QuadMesh(size * points, grid_quads(m, n)))
+
+
+TRANSLATION = quads_over(lambda x, y: 0.3 * np.sin(2.0 * x) + 0.35 * np.cos(1.7 * y))
+DOME = quads_over(lambda x, y: -0.35 * x**2 - 0.25 * y**2 + 0.05 * x * y**2)
+
+
+def test_a_noisy_translation_surface_gets_planar_faces():
+    recipe = gs.pq_net(planarity=gs.Planarity.FACES, keep_shape=False)
+    found = gs.optimize(noisy(TRANSLATION), recipe, anchor=gs.Free()).require()
+    assert found.quality.face_planarity.max < 1e-8
+    assert found.quality.star_planarity is None
+    assert deviation(found.control, TRANSLATION) < 0.5
+
+
+def test_an_exact_one_takes_no_step():
+    recipe = gs.pq_net(planarity=gs.Planarity.FACES)
+    assert gs.optimize(TRANSLATION, recipe, anchor=gs.Free()).steps == ()
+
+
+@pytest.mark.parametrize("degrees", [60.0, 90.0, 120.0])
+def test_white_faces_with_rhombi_at_an_angle(degrees):
+    """Fig. 12; the ratio of curvatures is that of a conjugate net symmetric to the principal one
+    only on surfaces of revolution, so none is asked for here."""
+    recipe = gs.pq_net(angle=np.radians(degrees), rhombus=True)
+    found = gs.optimize(DOME, recipe, anchor=gs.Free()).require().quality
+    assert found.face_planarity.max < 1e-8
+    assert found.rhombus_error.max < 1e-8
+    assert found.angle_error_deg.max < 1e-5
+
+
+@pytest.mark.parametrize("degrees", [60.0, 90.0, 120.0])
+def test_a_rotational_one_has_the_ratio_of_curvatures_of_fig_7(degrees):
+    """kappa1 / kappa2 = tan(angle / 2)^2, from a sphere whose meridians are cut conformally."""
+    half = np.tan(np.radians(degrees) / 2.0)
+    u = 2.0 * np.pi * np.arange(40) / 40
+    v = (np.arange(13) - 6.0) * 2.0 * np.pi / 40 / half
+    u, v = np.meshgrid(u, v, indexing="ij")
+    points = np.stack([np.cos(u) / np.cosh(v), np.sin(u) / np.cosh(v), np.tanh(v)], axis=-1)
+    mesh = gs.QuadMesh(1000.0 * points.reshape(-1, 3), grid_quads(40, 12, ring=True))
+    recipe = gs.pq_net(angle=np.radians(degrees), rhombus=True)
+    found = gs.optimize(gs.as_control_mesh(mesh), recipe, anchor=gs.Free()).require().quality
+    expected = min(half**2, 1.0 / half**2)
+    assert found.curvature_ratio == pytest.approx(expected, rel=0.02)
+
+
+def test_squares_are_rhombi_at_right_angles():
+    found = gs.optimize(DOME, gs.pq_net(square=True), anchor=gs.Free()).require().quality
+    assert found.rhombus_error.max < 1e-8
+    assert found.angle_error_deg.max < 1e-5
+
+
+def test_squares_at_another_angle_contradict_themselves():
+    with pytest.raises(gs.SettingError, match="contradict") as info:
+        gs.pq_net(square=True, angle=1.0)
+    assert info.value.where == "angle, square"
+
+
+def test_edges_of_a_noisy_asymptotic_mesh_get_planar_stars_and_right_angles():
+    surface = gs.Enneper(4000.0)
+    p, q = np.meshgrid(np.linspace(-0.6, 0.6, 13), np.linspace(-0.6, 0.6, 15), indexing="ij")
+    points = surface.asymptotic_point(p.ravel(), q.ravel())
+    control = noisy(gs.as_control_mesh(gs.QuadMesh(points, grid_quads(12, 14))))
+    recipe = gs.a_net(planarity=gs.Planarity.EDGE_STARS, angle=np.radians(90.0), keep_shape=False)
+    found = gs.optimize(control, recipe, anchor=gs.Free()).require()
+    assert found.quality.angle_error_deg.max < 1e-5
+    planarity = star_planarity(found.control.vertices, gs.edge_stars(control.mesh))
+    assert len(planarity) == 13 * 15 - 4
+    assert planarity.max() < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("planarity", "colour"),
+    [(gs.Planarity.FIRST_DIAGONAL_STARS, 0), (gs.Planarity.SECOND_DIAGONAL_STARS, 1)],
+)
+def test_stars_of_one_diagonal_mesh_alone(enneper, planarity, colour):
+    recipe = gs.a_net(planarity=planarity, keep_shape=False)
+    found = gs.optimize(noisy(enneper(12)), recipe, anchor=gs.Free()).require()
+    figures = [
+        star_planarity(net.vertices, net.stars).max() for net in gs.diagonal_meshes(found.control)
+    ]
+    assert figures[colour] < 1e-8
+    assert figures[1 - colour] > 1e-4
+    assert found.quality.star_planarity.max == pytest.approx(figures[colour], rel=1e-6)
+
+
+def test_spherical_stars_at_a_right_angle(enneper):
+    recipe = gs.principal_symmetric_net(angle=np.radians(90.0))
+    found = gs.optimize(DOME, recipe, anchor=gs.Free()).require().quality
+    assert found.sphericity.max < 1e-8
+    assert found.angle_error_deg.max < 1e-5
+
+
+def test_a_field_of_angles_is_met_where_the_quads_were(enneper):
+    control = enneper(18)
+    field = gs.RadialAngle((0.0, 0.0, 0.0), (0.0, 5000.0), np.radians((90.0, 70.0)))
+    found = gs.optimize(control, gs.a_net(angle=field), anchor=gs.Free()).require()
+    wanted = field(control.vertices[control.quads].mean(axis=1))
+    np.testing.assert_allclose(gs.node_angles(found.control), wanted, atol=1e-7)
+    assert found.quality.angle_error_deg.max < 1e-5
+    assert np.ptp(np.degrees(wanted)) > 5.0
+
+
+def test_a_mesh_with_an_odd_singularity_gets_planar_faces(sectors):
+    mesh = sectors(5, 4)
+    x, y, _ = mesh.vertices.T
+    bowl = mesh.moved(np.stack([x, y, 0.04 * (x * x + y * y)], axis=1))
+    recipe = gs.pq_net(planarity=gs.Planarity.FACES)
+    found = gs.optimize(gs.without_families(bowl), recipe, anchor=gs.Free()).require()
+    assert found.quality.face_planarity.max < 1e-8
+
+
+def test_no_step_folds_a_quad_even_where_there_is_no_net():
+    wave = quads_over(
+        lambda x, y: 0.35 * np.sin(1.5 * x + 0.7 * y) * np.cos(1.1 * y) + 0.2 * x * y, 36, 40
+    )
+    recipe = gs.pq_net(planarity=gs.Planarity.FACES, keep_shape=False)
+    found = gs.optimize(wave, recipe, anchor=gs.BoundaryPinned())
+    assert not found.converged
+    assert found.quality.collapsed == 0
+    assert found.verdict is not None
+
+
+def test_a_start_away_from_the_net_is_where_the_solve_begins(enneper):
+    control, recipe = enneper(12), gs.a_net(angle=np.radians(80.0))
+    net = gs.optimize(control, recipe, anchor=gs.Free()).require().control
+    again = gs.optimize(control, recipe, anchor=gs.Free(), start=net.vertices)
+    assert again.converged
+    assert again.steps == ()
+
+
+@pytest.mark.parametrize("unit", [1.0, 1000.0])
+@pytest.mark.parametrize("planar", [True, False])
+def test_projection_does_not_depend_on_units_or_place(enneper, unit, planar):
+    start = noisy(TRANSLATION if planar else enneper(14))
+    recipe = (
+        gs.pq_net(planarity=gs.Planarity.FACES, keep_shape=False)
+        if planar
+        else gs.a_net(angle=np.radians(90.0), keep_shape=False)
+    )
+    here = gs.optimize(start, recipe, anchor=gs.Free()).require().control
+    there = start.moved(start.vertices / unit + 1e6)
+    found = gs.optimize(there, recipe, anchor=gs.Free()).require().control
+    assert deviation(found.moved((found.vertices - 1e6) * unit), here) < 1e-6
+
+
+def test_the_report_names_verdict_and_history(enneper):
+    found = gs.optimize(enneper(10), gs.a_net(angle=np.radians(60.0), steps=2), anchor=gs.Free())
+    lines = found.report().splitlines()
+    assert lines[0] == found.status
+    assert len(lines) == 5
+    assert lines[-1] == found.verdict.message

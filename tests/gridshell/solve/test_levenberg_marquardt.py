@@ -340,3 +340,129 @@ def test_pardiso_and_the_portable_solver_agree_on_a_net(enneper):
     assert nets[1].converged
     move = np.abs(nets[0].control.vertices - nets[1].control.vertices).max()
     assert move <= 1e-8 * control.mesh.mean_edge
+
+
+# ---- guard, interrupt, resume ---------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Fence:
+    """Refuses an unknown above the limit."""
+
+    limit: float
+
+    def broken(self, x):
+        return np.flatnonzero(x > self.limit)
+
+
+def fenced(limit, constraint=None):
+    constraint = constraint or linear([[1.0]], [4.0])
+    return Problem(1, (Term("goal", Weight(1.0), constraint, goal=True),), NOTHING, Fence(limit))
+
+
+def test_a_step_over_the_fence_is_halved():
+    found = solve(fenced(2.5), np.array([0.0]), Stop(steps=1))
+    assert found.steps[0].accepted
+    assert found.steps[0].length == 0.5
+    np.testing.assert_allclose(found.x, [2.0], rtol=1e-5)
+
+
+def test_a_step_that_no_halving_brings_inside_is_refused_and_named():
+    found = solve(fenced(0.1), np.array([0.0]), Stop(steps=1))
+    assert not found.steps[0].accepted
+    assert found.x.tolist() == [0.0]
+    assert found.blocked.tolist() == [0]
+
+
+def test_the_fence_holds_to_the_end():
+    found = solve(fenced(3.0), np.array([0.0]), Stop(steps=60))
+    assert not found.converged
+    assert found.x[0] <= 3.0
+    assert found.x[0] > 2.9
+
+
+def test_damping_that_grows_out_of_bounds_ends_it_as_stalled():
+    found = solve(fenced(0.0), np.array([0.0]), Stop(steps=200))
+    assert found.end is gs.End.STALLED
+    assert found.status.startswith("Stalled after")
+
+
+def interrupt_after(steps):
+    def progress(number, step):
+        if number == steps:
+            raise KeyboardInterrupt
+
+    return progress
+
+
+def test_an_interrupt_returns_the_last_step_and_where_to_go_on():
+    start = np.array([-1.2, 1.0])
+    whole = solve(problem(ROSENBROCK), start, Stop(steps=12))
+    first = solve(problem(ROSENBROCK), start, Stop(steps=60), interrupt_after(5))
+    assert first.end is gs.End.INTERRUPTED
+    assert first.status.startswith("Interrupted after 5 steps")
+    rest = solve(problem(ROSENBROCK), start, Stop(steps=7), resume=first.state)
+    assert rest.x.tolist() == whole.x.tolist()
+    assert rest.state.steps == 12
+
+
+def test_guides_go_on_falling_after_a_resume():
+    guide = Term("guide", Weight(1.0, 0.1), linear([[1.0]], [4.0]))
+    both = problem(linear([[1.0]], [0.0]), guide)
+    whole = solve(both, np.array([9.0]), Stop(steps=6, tolerance=1e-300))
+    first = solve(both, np.array([9.0]), Stop(steps=3, tolerance=1e-300))
+    rest = solve(both, np.array([9.0]), Stop(steps=3, tolerance=1e-300), resume=first.state)
+    np.testing.assert_allclose(rest.x, whole.x, rtol=1e-12)
+    assert first.steps[0].energy > 10.0 * rest.steps[0].energy
+
+
+def test_a_state_of_another_problem_is_refused():
+    state = gs.State(np.zeros(5), 3, 1e-6, 2.0)
+    with pytest.raises(gs.SettingError, match="another problem") as info:
+        solve(problem(ROSENBROCK), np.zeros(2), Stop(), resume=state)
+    assert (info.value.value, info.value.limit) == ("5 unknowns", "2")
+
+
+@dataclass(frozen=True, eq=False)
+class OneShort(Rows):
+    """The step from 3 ends at 0.5, where the derivative has gone."""
+
+    def evaluate(self, x, lag):
+        slope = 1.2 if x[0] > 1.0 else 0.0
+        return Evaluation(x[None].copy(), np.full((1, 1, 1), slope))
+
+
+def test_a_system_that_cannot_be_factored_later_returns_the_state_before_it():
+    undamped = Stop(damping=0.0, damping_floor=0.0, steps=5)
+    found = solve(problem(OneShort(1, 1, None)), np.array([3.0]), undamped)
+    assert found.end is gs.End.UNSOLVABLE
+    np.testing.assert_allclose(found.x, [0.5])
+    assert "could not be factored" in found.status
+
+
+def test_every_step_tells_the_energy_of_every_term():
+    pull = Term("pull", Weight(3.0), linear([[1.0]], [4.0]))
+    found = solve(problem(linear([[1.0]], [1.0]), pull), np.zeros(1), Stop(steps=2))
+    assert found.steps[0].energies == {"goal": 1.0, "pull": 48.0}
+    assert found.steps[0].seconds > 0.0
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_reruns_agree_to_the_last_bit(enneper, threads):
+    recipe = gs.NetRecipe(
+        angle=np.radians(75.0), stop=Stop(engine=Engine(threads=threads, repeatable=True))
+    )
+    runs = [gs.optimize(enneper(16), recipe, anchor=gs.Free()) for _ in range(2)]
+    np.testing.assert_array_equal(runs[0].control.vertices, runs[1].control.vertices)
+
+
+def test_at_least_one_thread_is_needed():
+    with pytest.raises(gs.SettingError, match="At least one thread"):
+        Engine(threads=0)
+
+
+def test_the_memory_of_the_factorisation_is_told(enneper):
+    for portable in (False, True):
+        recipe = gs.NetRecipe(angle=1.3, stop=Stop(engine=Engine(portable=portable)))
+        found = gs.optimize(enneper(12), recipe, anchor=gs.Free())
+        assert 0.1 < found.memory < 100.0
