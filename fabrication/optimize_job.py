@@ -16,7 +16,8 @@ import gridshell as gs
 from fabrication.errors import OutputError
 
 _QUADS_AT_FULL_ACCURACY = 10_000
-"""Above it the default tolerance grows with the number of quads, as rounding does."""
+"""Above it the default tolerance grows with the square of the number of quads: the softest motions
+of a net of n quads have a stiffness that falls with n squared, and rounding shows in them."""
 
 _TOLERANCE = 1e-9
 
@@ -139,7 +140,8 @@ def _recipe(job: OptimizeJob, control: gs.ControlMesh) -> gs.Recipe:
     if job.paper:
         return gs.PaperRecipe(planarity=job.planarity, angle=angle, rhombus=job.rhombus)
     size = max(1.0, len(control.quads) / _QUADS_AT_FULL_ACCURACY)
-    stop = gs.Stop(job.steps, job.tolerance or _TOLERANCE * size, engine=job.engine)
+    tolerance = _TOLERANCE * size**2 if job.tolerance is None else job.tolerance
+    stop = gs.Stop(job.steps, tolerance, engine=job.engine)
     keep = not job.project
     if job.planarity.of_stars:
         recipe = gs.a_net(angle=angle, planarity=job.planarity, keep_shape=keep)

@@ -64,8 +64,7 @@ def read_obj(path: Path | str, *, unit: Unit) -> QuadMesh:
             advice="check the path; it is relative to the project file",
         ) from None
     vertices, quads = _parse(path, text.replace("\\\n", " ").splitlines())
-    used, compact = np.unique(quads, return_inverse=True)
-    return oriented(vertices[used] * unit.value, compact.reshape(quads.shape))
+    return oriented(vertices * unit.value, quads)
 
 
 def write_obj(path: Path | str, mesh: QuadMesh, *, unit: Unit) -> None:

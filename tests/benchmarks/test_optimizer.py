@@ -39,7 +39,7 @@ def line(name, found, seconds, start, limit):
     quality = found.quality
     planar = quality.star_planarity or quality.face_planarity
     angle = quality.angle_error_deg
-    per_step = seconds / max(1, len(found.steps))
+    per_step = float(np.mean([step.seconds for step in found.steps]))
     moved = move(found, start)
     print(
         f"\n{name}: {seconds:.2f} s ({limit} allowed), {len(found.steps)} steps of "
@@ -82,7 +82,7 @@ def project(start, *, on, angle=None, portable=False, tolerance=1e-9):
 def test_noisy_nets_at_90_degrees(family, quads, limit, star, degrees):
     start = case(family, quads, noisy=True)
     on = EDGES if family == "enne" else gs.Planarity.DIAGONAL_STARS
-    tolerance = 1e-9 * max(1.0, quads / 10_000)
+    tolerance = 1e-9 * max(1.0, quads / 10_000) ** 2
     found, seconds = project(start, on=on, angle=radians(90.0), tolerance=tolerance)
     line(f"{family} {quads:,} n05 at 90", found, seconds, start, limit)
     assert found.converged

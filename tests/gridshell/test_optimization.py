@@ -458,9 +458,41 @@ def test_a_noisy_translation_surface_gets_planar_faces():
     assert deviation(found.control, TRANSLATION) < 0.5
 
 
-def test_an_exact_one_takes_no_step():
+def of_revolution(surface):
+    u, v = np.meshgrid(np.linspace(0.0, 2.0, 13), np.linspace(-0.6, 0.6, 9), indexing="ij")
+    mesh = gs.QuadMesh(surface.point(u.ravel(), v.ravel()), grid_quads(12, 8))
+    return gs.as_control_mesh(mesh)
+
+
+@pytest.mark.parametrize(
+    "control",
+    [TRANSLATION, of_revolution(gs.Sphere(900.0)), of_revolution(gs.Torus(3000.0, 800.0))],
+    ids=["translation surface", "sphere", "torus"],
+)
+def test_translation_surfaces_and_lines_of_latitude_are_exact_and_take_no_step(control):
     recipe = gs.pq_net(planarity=gs.Planarity.FACES)
-    assert gs.optimize(TRANSLATION, recipe, anchor=gs.Free()).steps == ()
+    found = gs.optimize(control, recipe, anchor=gs.Free())
+    assert found.converged
+    assert found.steps == ()
+    assert found.quality.face_planarity.max < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("surface", "patch"),
+    [
+        (gs.Scherk(2000.0), gs.BisectingPatch(u=(-0.5, 0.5), v=(-0.5, 0.5), cells=14)),
+        (gs.Enneper(2000.0), gs.BisectingPatch(u=(-0.5, 0.5), v=(-0.5, 0.5), cells=14)),
+        (gs.Catenoid(2000.0), gs.BisectingPatch(u=(-0.5, 0.5), v=(-0.5, 0.5), cells=14)),
+        (gs.Helicoid(6000.0), gs.BisectingPatch(u=(-0.5, 0.5), v=(-0.5, 0.5), cells=14)),
+    ],
+)
+def test_nets_with_right_angles_stay_on_minimal_surfaces(surface, patch):
+    """Right node angles belong to minimal surfaces: the exact net is a fraction of an edge away."""
+    start = gs.control_patch(surface, patch)
+    recipe = gs.a_net(angle=np.radians(90.0))
+    found = gs.optimize(start, recipe, anchor=gs.Free(), reference=surface).require()
+    assert found.quality.surface_distance_mm.max < 0.01 * start.mesh.mean_edge
+    assert found.quality.curvature_ratio == pytest.approx(-1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("degrees", [60.0, 90.0, 120.0])

@@ -76,10 +76,11 @@ def test_faces_are_turned_to_the_orientation_of_the_first(read):
     assert mesh.quads.tolist() == [[0, 1, 2, 3], [1, 4, 5, 2]]
 
 
-def test_vertices_without_a_face_are_left_out(read):
+def test_vertices_without_a_face_keep_their_numbers(read):
     mesh = read("v 9 9 9\n" + SQUARE + "v 8 8 8\nf 2 3 4 5\n")
-    assert mesh.vertices.max() == 1.0
-    assert mesh.quads.tolist() == [[0, 1, 2, 3]]
+    assert mesh.vertices.max() == 9.0
+    assert mesh.quads.tolist() == [[1, 2, 3, 4]]
+    assert len(gs.remarks(mesh)) == 1
 
 
 def test_a_path_may_be_given_as_text(tmp_path):
