@@ -163,9 +163,6 @@ from .recipes import (
     PaperRecipe as PaperRecipe,
 )
 from .recipes import (
-    Planarity as Planarity,
-)
-from .recipes import (
     Recipe as Recipe,
 )
 from .recipes import (
@@ -226,4 +223,7 @@ from .surface import (
     Torus as Torus,
 )
 from .surface import TriangulatedSurface as TriangulatedSurface
+from .terms import (
+    Planarity as Planarity,
+)
 from .verdict import Verdict as Verdict

@@ -20,9 +20,10 @@ from gridshell.mesh import ControlMesh, QuadMesh, diagonal_stars, edge_stars, tw
 from gridshell.mesh.parity import alternating_labels
 from gridshell.optimization import OptimizedNet, optimize
 from gridshell.pose import pose
-from gridshell.recipes import NetRecipe, Planarity, polyline_triples, target_angles
+from gridshell.recipes import NetRecipe
 from gridshell.solve import Problem, Step, Stop, Term, Weight, solve
 from gridshell.surface import Surface
+from gridshell.terms import Planarity, polyline_triples, target_angles
 
 SMALLEST = 300
 """Quads below which a net is not made coarser."""

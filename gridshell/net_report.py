@@ -7,7 +7,7 @@ from typing import Any
 
 from gridshell.optimization import OptimizedNet
 from gridshell.quality import NetQuality, Spread
-from gridshell.recipes import Planarity
+from gridshell.terms import Planarity
 
 
 def net_report(

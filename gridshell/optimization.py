@@ -10,10 +10,11 @@ from gridshell.errors import SolveError
 from gridshell.mesh import ControlMesh
 from gridshell.pose import pose
 from gridshell.quality import NetQuality, net_quality
-from gridshell.recipes import Recipe, target_angles
+from gridshell.recipes import Recipe
 from gridshell.solve import End, Progress, State, Step, history, solve
 from gridshell.soundness import remarks, require_sound
 from gridshell.surface import Surface
+from gridshell.terms import target_angles
 from gridshell.verdict import Verdict, verdict
 
 

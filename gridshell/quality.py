@@ -27,8 +27,8 @@ from gridshell.mesh import (
     diagonal_stars,
     edge_stars,
 )
-from gridshell.recipes import Planarity, crossings, planar_stars, target_angles
 from gridshell.surface import Surface
+from gridshell.terms import Planarity, crossings, planar_stars, target_angles
 
 _SAMPLES = 10_000
 """Vertices at which curvature is estimated at most."""

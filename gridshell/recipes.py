@@ -9,64 +9,37 @@ unknowns, constant fairness, ten steps), kept to compare with.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from math import pi
 from typing import Protocol
 
 import numpy as np
 
-from gridshell.angles import Angle, angles_at, edge_crossings, face_crossings
-from gridshell.arrays import Floats, Indices
+from gridshell.angles import Angle, angles_at
+from gridshell.arrays import Floats
 from gridshell.conditions import Condition
 from gridshell.constraints import (
     Closeness,
     EqualDiagonals,
     Fairness,
-    NodeAngle,
-    Proximity,
     UnitNormal,
-    other_stars,
-    planar_faces,
-    planar_white_faces,
-    regular_stars,
     second_differences,
-    spherical_stars,
     stars_across_normals,
     white_quads_across_normals,
 )
 from gridshell.curvature import vertex_normals
 from gridshell.errors import SettingError
 from gridshell.folding import NoFolding
-from gridshell.mesh import ControlMesh, Stars, diagonal_stars, edge_stars
+from gridshell.mesh import diagonal_stars, edge_stars
 from gridshell.pose import Pose
-from gridshell.solve import Constraint, Guard, Problem, Stop, Term, Weight
+from gridshell.solve import Problem, Stop, Term, Weight
 from gridshell.surface import Surface
-
-
-class Planarity(Enum):
-    """What shall be flat (or, for the last one, round); the value is its name for people."""
-
-    DIAGONAL_STARS = "vertex stars of the diagonal meshes"
-    FIRST_DIAGONAL_STARS = "vertex stars of D1"
-    SECOND_DIAGONAL_STARS = "vertex stars of D2"
-    EDGE_STARS = "vertex stars of the edges"
-    FACES = "faces"
-    WHITE_FACES = "white faces of the checkerboard pattern"
-    SPHERICAL_STARS = "spherical vertex stars of the diagonal meshes"
-
-    @property
-    def of_stars(self) -> bool:
-        """Whether vertex stars are planar: an asymptotic net."""
-        return self in _STARS
-
-
-_STARS = frozenset(
-    {
-        Planarity.DIAGONAL_STARS,
-        Planarity.FIRST_DIAGONAL_STARS,
-        Planarity.SECOND_DIAGONAL_STARS,
-        Planarity.EDGE_STARS,
-    }
+from gridshell.terms import (
+    Planarity,
+    angle_terms,
+    planar_terms,
+    polyline_triples,
+    problem_of,
+    proximity_terms,
 )
 
 
@@ -135,8 +108,8 @@ class NetRecipe:
         triples = polyline_triples(control)
         target = second_differences(start, triples) * float(self.keep_shape)
         terms = [
-            *_planar_terms(control, self.planarity),
-            *_angle_terms(pose, self.planarity, self.angle, lag_lengths=False),
+            *planar_terms(control, self.planarity),
+            *angle_terms(pose, self.planarity, self.angle, lag_lengths=False),
             Term("fairness", self._fairness_beside(pose.reference), Fairness(triples, target)),
         ]
         if self.rhombus:
@@ -145,8 +118,8 @@ class NetRecipe:
         if self.closeness is not None:
             terms.append(Term("closeness", self.closeness, Closeness(control.vertices.ravel())))
         terms += [condition.term(pose) for condition in self.conditions]
-        terms += _proximity_terms(pose, self.proximity)
-        return _problem(pose, start, terms, NoFolding(pose.control.mesh)), start
+        terms += proximity_terms(pose, self.proximity)
+        return problem_of(pose, start, terms, NoFolding(pose.control.mesh)), start
 
     def _fairness_beside(self, reference: Surface | None) -> Weight:
         """Lowered no faster than proximity: held to a surface alone, a net slides together."""
@@ -205,15 +178,15 @@ class PaperRecipe:
             Term(name, Weight(1.0), across, goal=True),
             Term("unit normals", Weight(1.0), UnitNormal(across.points[:, -1])),
             Term("fairness", self.fairness, Fairness(triples, np.zeros((len(triples), 3)))),
-            *_angle_terms(pose, self.planarity, self.angle, lag_lengths=True),
-            *_proximity_terms(pose, self.proximity),
+            *angle_terms(pose, self.planarity, self.angle, lag_lengths=True),
+            *proximity_terms(pose, self.proximity),
         ]
         if self.rhombus:
             goal = EqualDiagonals(control.quads, as_printed=True)
             terms.append(Term("equal diagonals", Weight(1.0), goal, goal=True))
         normals = vertex_normals(control.mesh)
         start = np.concatenate([pose.start, normals.ravel()])
-        return _problem(pose, start, terms, None), start
+        return problem_of(pose, start, terms, None), start
 
 
 # ---- the recipes by name ------------------------------------------------------------------------
@@ -345,75 +318,6 @@ def _default(
         conditions=conditions,
         stop=Stop(steps=steps, tolerance=tolerance),
     )
-
-
-# ---- terms --------------------------------------------------------------------------------------
-
-
-def crossings(control: ControlMesh, planarity: Planarity) -> Indices:
-    """(m, 4) where the node angle of a net is measured."""
-    return edge_crossings(control) if planarity is Planarity.EDGE_STARS else face_crossings(control)
-
-
-def target_angles(net: ControlMesh, planarity: Planarity, angle: Angle) -> Floats:
-    """(m,) target at every crossing of *net* (mm), radians."""
-    corners = crossings(net, planarity)
-    return angles_at(angle, net.vertices[corners].mean(axis=1))
-
-
-def polyline_triples(control: ControlMesh) -> Indices:
-    """(m, 3) along the polylines of the edges and of both diagonal meshes."""
-    stars = diagonal_stars(control.mesh), edge_stars(control.mesh)
-    return np.concatenate([s.continuations() for s in stars])
-
-
-def _planar_terms(control: ControlMesh, planarity: Planarity) -> list[Term]:
-    def goal(name: str, constraint: Constraint) -> Term:
-        return Term(name, Weight(1.0), constraint, goal=True)
-
-    if planarity is Planarity.FACES:
-        return [goal("planar faces", planar_faces(control.quads))]
-    if planarity is Planarity.WHITE_FACES:
-        return [goal("white faces", planar_white_faces(edge_stars(control.mesh)))]
-    if planarity is Planarity.SPHERICAL_STARS:
-        return [goal("spherical stars", spherical_stars(diagonal_stars(control.mesh)))]
-    stars = planar_stars(control, planarity)
-    return [goal("star planarity", regular_stars(stars)), goal("other stars", other_stars(stars))]
-
-
-def planar_stars(control: ControlMesh, planarity: Planarity) -> Stars:
-    """The stars that shall be planar; the others have no spoke."""
-    if planarity is Planarity.EDGE_STARS:
-        return edge_stars(control.mesh)
-    stars = diagonal_stars(control.mesh)
-    colour = {Planarity.FIRST_DIAGONAL_STARS: 0, Planarity.SECOND_DIAGONAL_STARS: 1}.get(planarity)
-    if colour is None:
-        return stars
-    return Stars(stars.spokes, np.where(control.colour == colour, stars.count, 0), stars.closed)
-
-
-def _angle_terms(
-    pose: Pose, planarity: Planarity, angle: Angle | None, *, lag_lengths: bool
-) -> list[Term]:
-    if angle is None:
-        return []
-    constraint = NodeAngle(
-        crossings(pose.net, planarity), target_angles(pose.net, planarity, angle), lag_lengths
-    )
-    return [Term("node angle", Weight(1.0), constraint, goal=True)]
-
-
-def _proximity_terms(pose: Pose, weight: Weight) -> list[Term]:
-    if pose.reference is None:
-        return []
-    used = np.flatnonzero(pose.net.mesh.valence > 0)
-    return [Term("proximity", weight, Proximity(used, pose.reference))]
-
-
-def _problem(pose: Pose, start: Floats, terms: list[Term], guard: Guard | None) -> Problem:
-    fixed = (3 * pose.hold.vertices[:, None] + np.arange(3)).ravel()
-    used = [t for t in (*terms, *pose.hold.terms) if len(t.constraint.pattern().columns)]
-    return Problem(len(start), tuple(used), fixed, guard)
 
 
 def _check_angle(angle: Angle | None) -> None:
