@@ -99,7 +99,7 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
         raise KernelError(
             "The kernel refuses a lamella's solid",
             where=lamella.mark,
-            advice="look for overlapping slots among the findings",
+            advice="look at what check(structure, parts) finds of its slots",
         )
     return solid
 
