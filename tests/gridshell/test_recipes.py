@@ -184,3 +184,33 @@ def test_the_paper_holds_the_lengths_of_the_diagonals_still(pose):
 def test_the_paper_straightens_its_polylines(pose):
     problem, start = pose(gs.paper_a_net())
     assert np.abs(residual(terms(problem)["fairness"], start)).max() > 1e-3
+
+
+# ---- settings that do not go together -------------------------------------------------------
+
+
+def test_an_asymptotic_net_has_no_planar_faces():
+    with pytest.raises(gs.SettingError, match="planar vertex stars") as info:
+        gs.a_net(planarity=gs.Planarity.FACES)
+    assert (info.value.where, info.value.value) == ("planarity", "faces")
+
+
+def test_a_planar_quad_net_has_no_planar_stars():
+    with pytest.raises(gs.SettingError, match="planar faces") as info:
+        gs.pq_net(planarity=gs.Planarity.EDGE_STARS)
+    assert info.value.value == "vertex stars of the edges"
+
+
+def test_the_paper_has_equations_for_two_kinds_of_planarity():
+    with pytest.raises(gs.SettingError, match="no equation") as info:
+        gs.PaperRecipe(planarity=gs.Planarity.SPHERICAL_STARS)
+    assert info.value.where == "planarity"
+
+
+def test_the_paper_s_planar_quads_have_a_normal_for_every_white_quad(control, pose):
+    problem, _ = pose(gs.paper_pq_net(angle=1.0, rhombus=True, fairness=0.01))
+    names = [term.name for term in problem.terms if term.goal]
+    assert sorted(names) == ["equal diagonals", "node angle", "white faces"]
+    inner = np.count_nonzero(~control.mesh.on_boundary)
+    assert len(terms(problem)["white faces"].constraint.points) == inner
+    assert terms(problem)["fairness"].weight == Weight(0.01)

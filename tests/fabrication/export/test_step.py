@@ -1,3 +1,5 @@
+import errno
+import pathlib
 import re
 from datetime import datetime
 
@@ -78,6 +80,17 @@ def test_a_folder_that_is_not_there_is_an_error(pair, files, tmp_path):
     with pytest.raises(OutputError, match="STEP file cannot be written") as info:
         fab.write_step(whole, tmp_path / "missing" / "structure.step")
     assert "structure.step" in info.value.where
+
+
+def test_a_disk_that_fills_up_is_an_error_with_its_reason(pair, files, tmp_path, monkeypatch):
+    def full(self, content):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    whole = fab.assembly(files(pair).solids[:], pair.structure, name="shell")
+    monkeypatch.setattr(pathlib.Path, "write_bytes", full)
+    with pytest.raises(OutputError, match="STEP file cannot be written") as info:
+        fab.write_step(whole, tmp_path / "structure.step")
+    assert info.value.value == "No space left on device"
 
 
 def test_the_kernel_s_own_messages_are_kept_off_the_terminal(pair, files, tmp_path):
