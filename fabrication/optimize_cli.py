@@ -211,4 +211,4 @@ def _summary(result: OptimizeResult, out: Path) -> str:
         lines.append(f"  Found by {net['way']}.")
     if found.verdict is not None:
         lines.append(f"  {found.verdict.message}")
-    return "\n".join([*lines, *(f"  {remark}" for remark in found.remarks), f"  written to {out}"])
+    return "\n".join([*lines, *(f"  {remark}" for remark in net["remarks"]), f"  written to {out}"])

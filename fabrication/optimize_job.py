@@ -21,6 +21,9 @@ of a net of n quads have a stiffness that falls with n squared, and rounding sho
 
 _TOLERANCE = 1e-9
 
+_NEAR = 0.5
+"""Mean move, in mean edges, up to which an exact net still counts as the input made exact."""
+
 
 @dataclass(frozen=True)
 class OptimizeJob:
@@ -104,8 +107,10 @@ def optimize_job(job: OptimizeJob, progress: gs.Progress | None = None) -> Optim
             net, way = other, "keeping the shape of the lines, as straightening them failed"
     end = time.perf_counter()
     content = gs.net_report(net, job.planarity, seconds=end - read)
+    move = _move(control, net.control)
+    content["remarks"] += _far(move) if job.project else []
     report = {
-        "net": {**content, "way": way},
+        "net": {**content, "way": way, "move_edges": move},
         "history": gs.history_report(net),
         "timing": {"read": round(read - start, 3), "optimise": round(end - read, 3)},
     }
@@ -167,6 +172,25 @@ def _angle(job: OptimizeJob, control: gs.ControlMesh) -> gs.Angle | None:
     reach = float(np.linalg.norm(centres - centre, axis=1).max())
     x, y, z = centre.tolist()
     return gs.RadialAngle((x, y, z), (0.0, reach), (job.angle[0], job.angle[1]))
+
+
+def _move(before: gs.ControlMesh, after: gs.ControlMesh) -> dict[str, float]:
+    """How far the vertices went, in mean edges of the input."""
+    used = before.mesh.valence > 0
+    away = np.linalg.norm(after.vertices[used] - before.vertices[used], axis=1)
+    away /= before.mesh.mean_edge
+    return {"max": float(away.max()), "mean": float(away.mean())}
+
+
+def _far(move: dict[str, float]) -> list[str]:
+    if move["mean"] <= _NEAR:
+        return []
+    return [
+        f"No exact net was found near the input: this one is {move['mean']:.2f} edges away on "
+        f"average, {move['max']:.2f} at most; up to {_NEAR} counts as near. The lines of the input "
+        "do not run as those of such a net: draw or remesh them along its directions, or take "
+        "this net as a new form."
+    ]
 
 
 def _hopeless(net: gs.OptimizedNet) -> bool:

@@ -11,6 +11,7 @@ from gridshell.surface.analytic_revolution import (
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.surface import Foot, Surface, checked_points
+from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "Sphere",
     "Surface",
     "Torus",
+    "TriangleMesh",
     "TriangulatedSurface",
     "checked_points",
 ]

@@ -43,6 +43,10 @@ def saddle(x, y):
     return 0.4 * (x * x - y * y)
 
 
+def wave(x, y):
+    return 0.35 * np.sin(1.5 * x + 0.7 * y) * np.cos(1.1 * y) + 0.2 * x * y
+
+
 def dome(x, y):
     return -0.3 * x * x - 0.2 * y * y
 
@@ -131,6 +135,19 @@ def test_a_net_that_is_not_there_ends_with_1_and_says_why(command, mesh, tmp_pat
     assert net["verdict"]["message"] in out
     assert net["collapsed_faces"] == 0
     assert (tmp_path / "o.obj").exists()
+
+
+def test_an_exact_net_far_from_the_input_is_told(command, mesh, tmp_path):
+    mesh(wave, m=36, n=40)
+    options = "--unit m --net planar --on faces -o o.obj --report r.json".split()
+    code, out, _ = command("in.obj", *options)
+    net = json.loads((tmp_path / "r.json").read_text())["net"]
+    assert code == 0
+    assert net["move_edges"]["mean"] > 0.5
+    assert "No exact net was found near the input" in out
+    command("in.obj", *options, "--mode", "form")
+    net = json.loads((tmp_path / "r.json").read_text())["net"]
+    assert net["remarks"] == []
 
 
 def test_a_stopped_solve_goes_on_to_the_same_net(command, mesh, tmp_path):
