@@ -9,6 +9,7 @@ from gridshell.surface.analytic_revolution import (
     Torus,
 )
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
+from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.triangle_mesh import TriangleMesh
@@ -17,6 +18,7 @@ from gridshell.surface.triangulated import TriangulatedSurface
 __all__ = [
     "AnalyticSurface",
     "Catenoid",
+    "CurvedMesh",
     "Derivatives",
     "Domain",
     "Enneper",
@@ -32,4 +34,5 @@ __all__ = [
     "TriangleMesh",
     "TriangulatedSurface",
     "checked_points",
+    "face_shapes",
 ]

@@ -139,13 +139,14 @@ def test_a_net_that_is_not_there_ends_with_1_and_says_why(command, mesh, tmp_pat
 
 def test_an_exact_net_far_from_the_input_is_told(command, mesh, tmp_path):
     mesh(wave, m=36, n=40)
-    options = "--unit m --net planar --on faces -o o.obj --report r.json".split()
-    code, out, _ = command("in.obj", *options)
+    options = ["in.obj", "--unit", "m", "--net", "planar", "--on", "faces", "-o", "o.obj"]
+    options += ["--report", "r.json"]
+    code, out, _ = command(*options)
     net = json.loads((tmp_path / "r.json").read_text())["net"]
     assert code == 0
     assert net["move_edges"]["mean"] > 0.5
     assert "No exact net was found near the input" in out
-    command("in.obj", *options, "--mode", "form")
+    command(*options, "--mode", "form")
     net = json.loads((tmp_path / "r.json").read_text())["net"]
     assert net["remarks"] == []
 
