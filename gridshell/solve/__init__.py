@@ -1,6 +1,7 @@
 """The solver: constraints and terms make a problem, Levenberg-Marquardt solves it."""
 
 from gridshell.solve.constraint import Constraint, Evaluation, Pattern
+from gridshell.solve.factor import solve_definite
 from gridshell.solve.levenberg_marquardt import Progress, Stop, solve
 from gridshell.solve.linear import Engine
 from gridshell.solve.problem import Guard, Problem, Term, Weight
@@ -25,4 +26,5 @@ __all__ = [
     "columns_of",
     "history",
     "solve",
+    "solve_definite",
 ]

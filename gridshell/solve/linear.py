@@ -210,6 +210,35 @@ class _Pardiso:
         self._solver.free_memory(everything=True)
 
 
+def pardiso_solve(upper: csr_matrix, right: Floats, engine: Engine) -> Floats:
+    """Solve for all columns of *right* (n, k) with the upper triangle of a definite matrix.
+
+    Raises
+    ------
+    ImportError
+        Where PARDISO is not installed.
+    SolveError
+        When the matrix cannot be factored.
+    """
+    _point_to_mkl()
+    from pypardiso import PyPardisoSolver
+    from pypardiso.pardiso_wrapper import PyPardisoError
+
+    solver = PyPardisoSolver(mtype=2)
+    threads = engine.threads or os.cpu_count() or 1
+    for place, value in _pardiso_settings(threads if engine.repeatable else 0).items():
+        solver.set_iparm(place, value)
+    solver.set_phase(13)
+    upper.sort_indices()
+    try:
+        result = solver._call_pardiso(upper, np.asfortranarray(right))
+    except PyPardisoError as error:
+        raise SolveError("The linear system could not be factored", value=str(error)) from error
+    finally:
+        solver.free_memory(everything=True)
+    return np.asarray(result)
+
+
 def _pardiso_settings(repeatable_threads: int) -> dict[int, int]:
     """Parameters by their number in MKL's manual (from one), zero-based column indices."""
     return {
