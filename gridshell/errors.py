@@ -10,7 +10,12 @@
     │   │   ├── OddValenceError         a singularity of odd valence (Fig. 4 of the paper)
     │   │   └── ColouringError          a closed strip of odd length: D1 and D2 cannot be told apart
     │   ├── SurfaceError                the surface does not carry what is asked of it
-    │   │   └── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   │   ├── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   │   ├── FlatSurfaceError        no curvature that could tell directions apart
+    │   │   ├── UmbilicRegionError      curvature that is the same in all directions, over an area
+    │   │   ├── AngleInfeasibleError    no conjugate directions with the angle asked for
+    │   │   ├── PoleSingularityError    lines that all run into, or around, one point
+    │   │   └── TooManySingularitiesError   noise, or quads larger than the shape
     │   ├── SettingError                a number or a choice outside its limits
     │   └── FileError (OSError)         a file that is missing, unreadable or malformed
     └── SolveError (RuntimeError)       the optimisation ended without a usable net
@@ -94,6 +99,26 @@ class SurfaceError(InputError):
 
 class NotHyperbolicError(SurfaceError):
     """Asymptotic directions asked for where the Gaussian curvature is not negative."""
+
+
+class FlatSurfaceError(SurfaceError):
+    """A surface without curvature: nothing on it tells one direction from another."""
+
+
+class UmbilicRegionError(SurfaceError):
+    """A region that bends alike in all directions, as a sphere does: no principal directions."""
+
+
+class AngleInfeasibleError(SurfaceError):
+    """An elliptic region has no conjugate directions with the angle asked for."""
+
+
+class PoleSingularityError(SurfaceError):
+    """A point that lines of one family all run into, or around: no quad mesh follows them."""
+
+
+class TooManySingularitiesError(SurfaceError):
+    """Singular points too close together for the size of the quads: noise, or quads too large."""
 
 
 class SettingError(InputError):
