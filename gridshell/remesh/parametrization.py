@@ -32,8 +32,8 @@ class Target:
     Parameters
     ----------
     lines : (f, 2) unit direction, in the face's frame, along which the coordinate is constant.
-    rise : (f,) derivative wanted in the direction that is *lines* turned clockwise ... by sign.
     across : (f, 2) unit normal of *lines* towards which the coordinate grows.
+    rise : (f,) derivative wanted across the lines, 1/mm.
     weight : (f,) factor on the whole energy of a triangle.
     lam : (f,) weight of direction against spacing.
     """

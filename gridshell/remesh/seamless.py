@@ -1,0 +1,211 @@
+"""The seamless chart of a frame field: coordinates u, v whose integer lines are the quad mesh.
+
+The ladder of REMESH, step 9: the alignment weight is lowered only as far as the chart needs to be
+free of folds and to have the right cone at every singular vertex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gridshell.arrays import Floats, Indices, Mask
+from gridshell.field import FrameField, Singularities, matching
+from gridshell.remesh.boundary_runs import aligned_runs
+from gridshell.remesh.charts import Charts, charts
+from gridshell.remesh.cut import Cut, cut_open
+from gridshell.remesh.parametrization import Coordinate, Target, coordinate, ring, winding
+from gridshell.remesh.spacing import integrating_factor
+from gridshell.solve import Engine
+from gridshell.surface import TriangleMesh
+
+LADDER = ((100.0, False), (100.0, True), (30.0, False), (10.0, False), (3.0, False), (1.0, False))
+"""Weight of direction against spacing, and whether the spacing follows an integrating factor."""
+
+SOFT = 3.0
+"""Weight of direction next to a singular vertex, at most."""
+
+_STIFFENINGS = 5
+_FEW = 0.01
+"""Folded triangles may spoil this share of the cells."""
+
+_WRONG_CONE = 0.1
+"""Difference of a chart's angle sum from the right one that counts, radians."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seamless:
+    """A chart of the surface cut open.
+
+    Parameters
+    ----------
+    mesh : the triangles.
+    corners : (f, 3, 2) chart positions of the corners, multiples of ``parametrization.GRAIN``.
+    flips : (3f,) +1 or -1 by which a position is multiplied across a half-edge.
+    field_signs : (f,) signs of the frames in the chart: d1 times the sign points to growing u.
+    lam : weight of direction that was needed.
+    folded : (k,) triangles that are turned over or flat.
+    cones : (k,) vertices whose angle sum is wrong.
+    coordinates : how u and v were found.
+    """
+
+    mesh: TriangleMesh
+    corners: Floats
+    flips: Indices
+    field_signs: Indices
+    lam: float
+    folded: Indices
+    cones: Indices
+    coordinates: tuple[Coordinate, Coordinate]
+
+
+def seamless(
+    field: FrameField,
+    turns: Singularities,
+    spacing: float,
+    *,
+    ladder: tuple[tuple[float, bool], ...] = LADDER,
+    align_boundary: bool = True,
+    engine: Engine | None = None,
+) -> Seamless:
+    """Find the chart in which both families are integer lines about *spacing* mm apart.
+
+    Parameters
+    ----------
+    field : with the neighbourhoods of singular vertices cleaned and split.
+    turns : its singular vertices.
+    ladder : what is tried until the chart is free of folds; the last rung is kept as it is.
+    align_boundary : keep boundaries that run along a family as lines of the mesh.
+
+    Raises
+    ------
+    SolveError
+        When the linear system cannot be factored.
+    """
+    work = _Work.of(field, turns, spacing, align_boundary, engine or Engine())
+    best: Seamless | None = None
+    for lam, by_factor in ladder:
+        found = work.rung(lam, by_factor)
+        if best is None or _faults(found) < _faults(best):
+            best = found
+        if _faults(best) == 0:
+            return best
+        if _faults(best) <= _FEW * work.cells:
+            return best
+    assert best is not None
+    return best
+
+
+def _faults(chart: Seamless) -> int:
+    return len(chart.folded) + len(chart.cones)
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """What stays the same from rung to rung."""
+
+    field: FrameField
+    turns: Singularities
+    spacing: float
+    cut: Cut
+    unknowns: tuple[Charts, Charts]
+    engine: Engine
+
+    @classmethod
+    def of(
+        cls, field: FrameField, turns: Singularities, spacing: float, align: bool, engine: Engine
+    ) -> _Work:
+        mesh = field.mesh
+        sign, rotation = matching(field)
+        singular, half = _masks(mesh, turns)
+        cut = cut_open(mesh, sign, rotation, half)
+        middle = np.linalg.norm(mesh.vertices - mesh.centroids.mean(axis=0), axis=1)
+        origin = int(np.argmin(middle))
+        runs = [
+            aligned_runs(field, family, 3.0 * spacing)
+            if align
+            else np.zeros(len(mesh.twin), dtype=bool)
+            for family in (2, 1)  # u is constant along lines of family 2
+        ]
+        unknowns = [charts(mesh, cut, singular, run, origin=origin) for run in runs]
+        return cls(field, turns, spacing, cut, (unknowns[0], unknowns[1]), engine)
+
+    @property
+    def cells(self) -> float:
+        """Quads that the target spacing makes."""
+        mesh = self.field.mesh
+        return float((mesh.areas / np.sin(self.field.angle)).sum() / self.spacing**2)
+
+    def rung(self, lam: float, by_factor: bool) -> Seamless:
+        """Solve with the weight *lam*, stiffening where triangles fold."""
+        mesh = self.field.mesh
+        lams = np.full(len(mesh.triangles), lam)
+        near = ring(mesh, self.turns.vertices, 2)
+        lams[near] = np.minimum(lam, SOFT)
+        weight = np.ones(len(mesh.triangles))
+        best: Seamless | None = None
+        for _ in range(_STIFFENINGS + 1):
+            found = self._solve(lams, weight, lam, by_factor)
+            if best is None or _faults(found) < _faults(best):
+                best = found
+            if _faults(found) == 0:
+                break
+            bad = np.unique(mesh.triangles[found.folded])
+            soft = np.union1d(ring(mesh, bad, 1), ring(mesh, found.cones, 4))
+            lams[soft] /= 5.0
+            weight[soft] *= 1.5
+        assert best is not None
+        return best
+
+    def _solve(self, lams: Floats, weight: Floats, lam: float, by_factor: bool) -> Seamless:
+        mesh, field = self.field.mesh, self.field
+        signs = self.cut.signs
+        d1, d2 = (_flat(angle) * signs[:, None] for angle in (field.first, field.second))
+        found = []
+        for lines, across in ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0))):
+            rise = 1.0 / (self.spacing * np.sin(field.angle))
+            if by_factor:
+                rise = rise * integrating_factor(mesh, across * rise[:, None], lines, self.cut.flips)
+            target = Target(lines, across, rise, weight, lams)
+            unknowns = self.unknowns[len(found)]
+            found.append(coordinate(mesh, unknowns, target, self.engine))
+        corners = np.stack([found[0].corners, found[1].corners], axis=-1)
+        area, total = winding(mesh, corners)
+        cones = self._wrong_cones(total)
+        return Seamless(
+            mesh,
+            corners,
+            self.cut.flips,
+            signs,
+            lam,
+            np.flatnonzero(area <= 0.0),
+            cones,
+            (found[0], found[1]),
+        )
+
+    def _wrong_cones(self, total: Floats) -> Indices:
+        mesh = self.field.mesh
+        right = np.full(len(mesh.vertices), 2.0 * np.pi)
+        right[self.turns.vertices] *= 1.0 - self.turns.indices
+        wrong = np.abs(total - right) > _WRONG_CONE
+        return np.flatnonzero(wrong & ~mesh.on_boundary)
+
+
+def _masks(mesh: TriangleMesh, turns: Singularities) -> tuple[Mask, Mask]:
+    singular = np.zeros(len(mesh.vertices), dtype=bool)
+    half = singular.copy()
+    singular[turns.vertices] = True
+    half[turns.vertices] = np.rint(2.0 * turns.indices).astype(int) % 2 != 0
+    return singular, half
+
+
+def _flat(angle: Floats) -> Floats:
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _turned(direction: Floats, side: float) -> Floats:
+    """A quarter turn, counter-clockwise for side +1."""
+    return np.stack([-side * direction[:, 1], side * direction[:, 0]], axis=1)
+
+
