@@ -74,7 +74,7 @@ def lines_at(field: FrameField, faces: Indices, points: Points, families: Indice
             _slopes(mesh, used, field.second, field.second_directions),
         ]
     )
-    row = families - 1
+    row = families.astype(np.int64) - 1
     offset = np.einsum("mic,mc->mi", mesh.face_frames[faces, :2], points - mesh.centroids[faces])
     turn = np.einsum("mi,mi->m", slopes[row, slot], offset)
     angle = np.where(row == 0, field.first[faces], field.second[faces]) + turn
