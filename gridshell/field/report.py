@@ -24,7 +24,8 @@ class FieldReport:
     positions : (k, 3) singular points, mm.
     indices : (k,) turns of the pair around each, multiples of 1/2.
     valences : (k,) edges of the quad mesh that meet there, 4 - 4 times the index.
-    infeasible_area : where the surface has no pair as asked for and a substitute stands.
+    infeasible_area : where the surface has no pair as asked for and a substitute stands; at 1 the
+        angle asked for has no effect on a widened field.
     angles : (5,) the angle between the lines at 0, 5, 50, 95 and 100 % of the area, rad.
     umbilic_area : where curvature does not tell directions apart.
     hand : which of the two mirror-symmetric pairs, where there was a choice.

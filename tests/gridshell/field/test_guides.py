@@ -55,6 +55,19 @@ def test_a_guide_across_a_sphere_cap_makes_a_field_without_singular_points(
     assert np.degrees(np.arcsin(cosine)).max() < 3.0
 
 
+def test_noise_in_the_curvature_of_a_sphere_does_not_show(
+    on_ellipsoid: Callable[..., CurvedMesh],
+) -> None:
+    cap = on_ellipsoid((1.0, 1.0, 1.0), 4, 0.6)
+    noise = 0.005 * np.random.default_rng(0).normal(size=cap.face_shapes.shape)
+    noisy = CurvedMesh(cap.mesh, cap.normals, cap.shapes, cap.face_shapes + noise)
+    turn = np.linspace(-0.85, 0.85, 40)
+    guide = Guide(np.stack([np.sin(turn), 0.0 * turn, np.cos(turn)], axis=1))
+    field, exact = (principal_field(c, guides=[guide]) for c in (noisy, cap))
+    assert len(singularities(field).vertices) == 0
+    assert np.degrees(np.abs(np.arcsin(np.sin(field.first - exact.first)))).max() < 3.0
+
+
 def half_flat(x: Floats, y: Floats) -> tuple[Floats, ...]:
     """A parabolic gutter along the diagonal x + y = 0 for x + y > 0 that runs out into a plane."""
     s = np.maximum(x + y, 0.0)
