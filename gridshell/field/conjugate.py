@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Sequence
 
 import numpy as np
 
-from gridshell.arrays import Floats
+from gridshell.arrays import Floats, Mask
 from gridshell.errors import AngleInfeasibleError, SettingError
 from gridshell.field.frame_field import FrameField
-from gridshell.field.principal import PrincipalFrames, principal_frames
+from gridshell.field.guides import Guide, guided, require_directions
+from gridshell.field.principal_frames import PrincipalFrames, principal_frames
 from gridshell.surface.curved_mesh import CurvedMesh
 from gridshell.surface.triangle_mesh import TriangleMesh, place
 
@@ -46,6 +48,7 @@ def conjugate_field(
     *,
     hand: Hand = Hand.RIGHT,
     where_infeasible: Infeasible = Infeasible.WIDEN,
+    guides: Sequence[Guide] = (),
 ) -> FrameField:
     """Conjugate directions that form *angle*, rad, from family 1 to family 2.
 
@@ -53,10 +56,19 @@ def conjugate_field(
     at phi and phi + angle from e1, mirrored in e1 for the left hand. Continuous through K = 0, and
     turning the surface inside out gives the same lines with the families swapped.
 
+    Parameters
+    ----------
+    hand : one of the two mirror-symmetric solutions.
+    where_infeasible : what stands in where K > 0 allows no such pair, always so at umbilics unless
+        the angle is 90 degrees. The triangles are marked in the field.
+    guides : lines that decide where curvature does not.
+
     Raises
     ------
     SettingError
         When *angle* is not inside (0, pi).
+    FlatSurfaceError, UmbilicRegionError
+        As for principal directions.
     AngleInfeasibleError
         With ``Infeasible.REFUSE``, where a triangle has no such pair.
     """
@@ -67,6 +79,7 @@ def conjugate_field(
             value=f"{np.degrees(angle):.6g} degrees",
             limit="more than 0 and less than 180 degrees",
         )
+    require_directions(curved, guides)
     frames = principal_frames(curved)
     cosine = 0.0 if abs(np.cos(angle)) < _RIGHT_ANGLE else float(np.cos(angle))
     infeasible = np.abs(frames.mean * cosine) > frames.half
@@ -82,7 +95,7 @@ def conjugate_field(
     ratio = np.where(infeasible, fallback, ratio)
     phi = (np.arccos(ratio) - opening) / 2.0
     first = frames.axis + (phi if hand is Hand.RIGHT else -phi - opening)
-    return FrameField(curved.mesh, first, first + opening, infeasible)
+    return guided(curved, FrameField(curved.mesh, first, first + opening, infeasible), guides)
 
 
 def smallest_angle(frames: PrincipalFrames) -> Floats:
@@ -96,7 +109,7 @@ def smallest_angle(frames: PrincipalFrames) -> Floats:
 
 
 def _refusal(
-    mesh: TriangleMesh, frames: PrincipalFrames, angle: float, infeasible: np.ndarray
+    mesh: TriangleMesh, frames: PrincipalFrames, angle: float, infeasible: Mask
 ) -> AngleInfeasibleError:
     least = smallest_angle(frames)
     worst = int(np.argmax(np.where(infeasible, least, -1.0)))

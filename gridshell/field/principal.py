@@ -2,48 +2,33 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
-from gridshell.arrays import Floats
 from gridshell.field.frame_field import FrameField
+from gridshell.field.guides import Guide, guided, require_directions
+from gridshell.field.principal_frames import principal_frames
 from gridshell.surface.curved_mesh import CurvedMesh
 
 
-class PrincipalFrames(NamedTuple):
-    """Principal curvatures kappa1 <= kappa2, signed, and the direction of kappa1, per triangle."""
-
-    axis: Floats
-    """(f,) angle of e1, the direction of kappa1, against row 0 of the face frame, rad."""
-    mean: Floats
-    """(f,) H = (kappa1 + kappa2) / 2, 1/mm."""
-    half: Floats
-    """(f,) D = (kappa2 - kappa1) / 2 >= 0, 1/mm."""
-
-    @property
-    def largest(self) -> Floats:
-        """(f,) the larger principal curvature by amount, 1/mm."""
-        return np.asarray(np.abs(self.mean) + self.half)
-
-
-def principal_frames(curved: CurvedMesh) -> PrincipalFrames:
-    """Diagonalise the shape operator of every triangle.
-
-    The normal curvature at angle t is (a + c) / 2 + (a - c) / 2 cos 2t + b sin 2t, largest at
-    2t = atan2(2b, a - c). Because kappa1 is the smaller one with its sign, e1 is one and the same
-    family all over an oriented surface.
-    """
-    a, b, c = curved.face_shapes.T
-    axis = np.arctan2(2.0 * b, a - c) / 2.0 - np.pi / 2.0
-    return PrincipalFrames(axis, (a + c) / 2.0, np.hypot((a - c) / 2.0, b))
-
-
-def principal_field(curved: CurvedMesh) -> FrameField:
+def principal_field(curved: CurvedMesh, *, guides: Sequence[Guide] = ()) -> FrameField:
     """The principal directions: family 1 along kappa1, family 2 along kappa2, kappa1 <= kappa2.
 
     They are the conjugate pair of 90 degrees (eq. 2). Turning the surface inside out swaps the
     families.
+
+    Parameters
+    ----------
+    guides : lines that decide where curvature does not; without any, nothing is smoothed.
+
+    Raises
+    ------
+    FlatSurfaceError
+        For a plane without guides.
+    UmbilicRegionError
+        When more than 30 % of the area bends alike in all directions and no guide reaches it.
     """
+    require_directions(curved, guides)
     axis = principal_frames(curved).axis
-    return FrameField.of_lines(curved.mesh, axis, axis + np.pi / 2.0)
+    return guided(curved, FrameField.of_lines(curved.mesh, axis, axis + np.pi / 2.0), guides)

@@ -72,13 +72,13 @@ class TriangulatedSurface:
     def closest(self, points: Points) -> Foot:
         """Find the feet of *points* (n, 3), mm."""
         points = checked_points(points)
-        triangle, weights = self._feet(points)
+        triangle, weights = self.feet(points)
         corners = self.triangles[triangle]
         feet = np.einsum("nk,nkc->nc", weights, self.vertices[corners])
         normals = unit(np.einsum("nk,nkc->nc", weights, self._vertex_normals[corners]))
         return Foot(feet, normals, self._curvatures[triangle])
 
-    def _feet(self, points: Points) -> tuple[Indices, Floats]:
+    def feet(self, points: Points) -> tuple[Indices, Floats]:
         """Nearest triangle (n,) and barycentric weights (n, 3) of the foot in it.
 
         Candidates are the triangles with the nearest centroids; a foot is final when no triangle

@@ -139,3 +139,61 @@ def on_ellipsoid() -> Callable[..., CurvedMesh]:
         return ellipsoid_mesh(axes, points, triangles)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def monkey(on_disk: Callable[..., CurvedMesh]) -> Callable[[int], CurvedMesh]:
+    """The monkey saddle z = x^3 - 3 x y^2 over the unit disk, in so many rings."""
+
+    def height(x: Floats, y: Floats) -> tuple[Floats, ...]:
+        cube = x**3 - 3.0 * x * y * y
+        return cube, 3.0 * (x * x - y * y), -6.0 * x * y, 6.0 * x, -6.0 * y, -6.0 * x
+
+    return lambda rings: on_disk(height, rings)
+
+
+@pytest.fixture(scope="session")
+def quartic(on_disk: Callable[..., CurvedMesh]) -> CurvedMesh:
+    """z = Re (x + i y)^4 + 0.03 Re (x + i y)^2: two points of index -1/2, 0.15 apart."""
+
+    def height(x: Floats, y: Floats) -> tuple[Floats, ...]:
+        return (
+            x**4 - 6.0 * x * x * y * y + y**4 + 0.03 * (x * x - y * y),
+            4.0 * x**3 - 12.0 * x * y * y + 0.06 * x,
+            -12.0 * x * x * y + 4.0 * y**3 - 0.06 * y,
+            12.0 * (x * x - y * y) + 0.06,
+            -24.0 * x * y,
+            12.0 * (y * y - x * x) - 0.06,
+        )
+
+    return on_disk(height, 40)
+
+
+@pytest.fixture(scope="session")
+def turned_over() -> Callable[[CurvedMesh], CurvedMesh]:
+    """The same surface with the other side up; triangles keep their numbers and first edges."""
+
+    def flip(curved: CurvedMesh) -> CurvedMesh:
+        mesh = TriangleMesh(curved.mesh.vertices, curved.mesh.triangles[:, [1, 0, 2]])
+        # row 0 of the frames turns round and row 1 stays: the mixed component changes sign twice
+        shapes = curved.face_shapes * [-1.0, 1.0, -1.0]
+        return CurvedMesh(mesh, -curved.normals, -curved.shapes, shapes)
+
+    return flip
+
+
+@pytest.fixture(scope="session")
+def plane(on_grid: Callable[..., CurvedMesh]) -> CurvedMesh:
+    """A flat square of side 1."""
+    return on_grid(graph(lambda x, y: (x * 0.0,) * 6), ((0.0, 1.0), (0.0, 1.0)), (16, 16))
+
+
+@pytest.fixture(scope="session")
+def with_forms(plane: CurvedMesh) -> Callable[[Floats], CurvedMesh]:
+    """Triangles in a plane that claim the shape operators (f, 3), repeated over all of them."""
+
+    def build(forms_: Floats) -> CurvedMesh:
+        rows = np.resize(forms_, (len(plane.mesh.triangles), 3))
+        return CurvedMesh(plane.mesh, plane.normals, plane.shapes, rows)
+
+    return build
