@@ -10,7 +10,12 @@
     │   │   ├── OddValenceError         a singularity of odd valence (Fig. 4 of the paper)
     │   │   └── ColouringError          a closed strip of odd length: D1 and D2 cannot be told apart
     │   ├── SurfaceError                the surface does not carry what is asked of it
-    │   │   └── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   │   ├── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   │   ├── DegenerateSurfaceError  triangles without area, vertices that are not numbers
+    │   │   ├── DisconnectedError       a surface in several pieces
+    │   │   ├── SelfIntersectionError   a surface that cuts through itself
+    │   │   ├── PoorTriangulationError  slivers whose curvature cannot be told
+    │   │   └── NoisyInputError         vertices that scatter too far about any smooth surface
     │   ├── SettingError                a number or a choice outside its limits
     │   └── FileError (OSError)         a file that is missing, unreadable or malformed
     └── SolveError (RuntimeError)       the optimisation ended without a usable net
@@ -94,6 +99,26 @@ class SurfaceError(InputError):
 
 class NotHyperbolicError(SurfaceError):
     """Asymptotic directions asked for where the Gaussian curvature is not negative."""
+
+
+class DegenerateSurfaceError(SurfaceError):
+    """Triangles without area, vertices that are not finite, no surface at all."""
+
+
+class DisconnectedError(SurfaceError):
+    """A surface in several pieces."""
+
+
+class SelfIntersectionError(SurfaceError):
+    """A surface that cuts through itself."""
+
+
+class PoorTriangulationError(SurfaceError):
+    """Slivers whose curvature cannot be told from their corners."""
+
+
+class NoisyInputError(SurfaceError):
+    """Vertices that scatter too far about any smooth surface."""
 
 
 class SettingError(InputError):

@@ -11,6 +11,7 @@ from gridshell.surface.analytic_revolution import (
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
+from gridshell.surface.jets import CurvatureEstimate, curved_by_jets, estimated_curvature
 from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
@@ -18,6 +19,7 @@ from gridshell.surface.triangulated import TriangulatedSurface
 __all__ = [
     "AnalyticSurface",
     "Catenoid",
+    "CurvatureEstimate",
     "CurvedMesh",
     "Derivatives",
     "Domain",
@@ -34,5 +36,7 @@ __all__ = [
     "TriangleMesh",
     "TriangulatedSurface",
     "checked_points",
+    "curved_by_jets",
+    "estimated_curvature",
     "face_shapes",
 ]
