@@ -15,7 +15,12 @@
     │   │   ├── UmbilicRegionError      curvature that is the same in all directions, over an area
     │   │   ├── AngleInfeasibleError    no conjugate directions with the angle asked for
     │   │   ├── PoleSingularityError    lines that all run into, or around, one point
-    │   │   └── TooManySingularitiesError   noise, or quads larger than the shape
+    │   │   ├── TooManySingularitiesError   noise, or quads larger than the shape
+    │   │   ├── DegenerateSurfaceError  triangles without area, vertices that are not numbers
+    │   │   ├── DisconnectedError       a surface in several pieces
+    │   │   ├── SelfIntersectionError   a surface that cuts through itself
+    │   │   ├── PoorTriangulationError  slivers whose curvature cannot be told
+    │   │   └── NoisyInputError         vertices that scatter too far about any smooth surface
     │   ├── SettingError                a number or a choice outside its limits
     │   └── FileError (OSError)         a file that is missing, unreadable or malformed
     └── SolveError (RuntimeError)       the optimisation ended without a usable net
@@ -119,6 +124,26 @@ class PoleSingularityError(SurfaceError):
 
 class TooManySingularitiesError(SurfaceError):
     """Singular points too close together for the size of the quads: noise, or quads too large."""
+
+
+class DegenerateSurfaceError(SurfaceError):
+    """Triangles without area, vertices that are not finite, no surface at all."""
+
+
+class DisconnectedError(SurfaceError):
+    """A surface in several pieces."""
+
+
+class SelfIntersectionError(SurfaceError):
+    """A surface that cuts through itself."""
+
+
+class PoorTriangulationError(SurfaceError):
+    """Slivers whose curvature cannot be told from their corners."""
+
+
+class NoisyInputError(SurfaceError):
+    """Vertices that scatter too far about any smooth surface."""
 
 
 class SettingError(InputError):

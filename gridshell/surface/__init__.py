@@ -11,13 +11,16 @@ from gridshell.surface.analytic_revolution import (
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
+from gridshell.surface.jets import CurvatureEstimate, curved_by_jets, estimated_curvature
 from gridshell.surface.surface import Foot, Surface, checked_points
+from gridshell.surface.surface_checks import Remark, aspects, sound_mesh
 from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
 
 __all__ = [
     "AnalyticSurface",
     "Catenoid",
+    "CurvatureEstimate",
     "CurvedMesh",
     "Derivatives",
     "Domain",
@@ -26,6 +29,7 @@ __all__ = [
     "Helicoid",
     "Hypar",
     "Hyperboloid",
+    "Remark",
     "RevolutionSurface",
     "Scherk",
     "Sphere",
@@ -33,6 +37,10 @@ __all__ = [
     "Torus",
     "TriangleMesh",
     "TriangulatedSurface",
+    "aspects",
     "checked_points",
+    "curved_by_jets",
+    "estimated_curvature",
     "face_shapes",
+    "sound_mesh",
 ]
