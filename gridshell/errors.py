@@ -10,9 +10,12 @@
     │   │   ├── OddValenceError         a singularity of odd valence (Fig. 4 of the paper)
     │   │   └── ColouringError          a closed strip of odd length: D1 and D2 cannot be told apart
     │   ├── SurfaceError                the surface does not carry what is asked of it
-    │   │   └── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   │   ├── NotHyperbolicError      an asymptotic net where Gaussian curvature is not negative
+    │   │   ├── NotOnePatchError        faces that are a solid, several patches, or none
+    │   │   └── NoMinimalSurfaceError   boundary curves that no minimal surface of that kind spans
     │   ├── SettingError                a number or a choice outside its limits
     │   └── FileError (OSError)         a file that is missing, unreadable or malformed
+    │       └── UnitError               a unit that is not stated, or contradicts the file's own
     └── SolveError (RuntimeError)       the optimisation ended without a usable net
 
 Each carries *what* went wrong, *where* (key, index, position), the *value* found, the *limit* it
@@ -96,12 +99,24 @@ class NotHyperbolicError(SurfaceError):
     """Asymptotic directions asked for where the Gaussian curvature is not negative."""
 
 
+class NotOnePatchError(SurfaceError):
+    """Faces that are a solid, several patches apart or branching, or no faces at all."""
+
+
+class NoMinimalSurfaceError(SurfaceError):
+    """Boundary curves that no minimal surface of the kind asked for spans."""
+
+
 class SettingError(InputError):
     """A number or a choice outside its limits."""
 
 
 class FileError(InputError, OSError):
     """A file that is missing, unreadable or malformed."""
+
+
+class UnitError(FileError):
+    """A unit that is not stated, or contradicts the one the file states."""
 
 
 class SolveError(GridshellError, RuntimeError):

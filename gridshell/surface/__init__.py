@@ -9,14 +9,18 @@ from gridshell.surface.analytic_revolution import (
     Torus,
 )
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
+from gridshell.surface.brep import BrepSurface
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
+from gridshell.surface.planar_mesher import mesh_domain
 from gridshell.surface.surface import Foot, Surface, checked_points
+from gridshell.surface.tessellation import ParameterDisk, tessellate
 from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
 
 __all__ = [
     "AnalyticSurface",
+    "BrepSurface",
     "Catenoid",
     "CurvedMesh",
     "Derivatives",
@@ -26,6 +30,7 @@ __all__ = [
     "Helicoid",
     "Hypar",
     "Hyperboloid",
+    "ParameterDisk",
     "RevolutionSurface",
     "Scherk",
     "Sphere",
@@ -35,4 +40,6 @@ __all__ = [
     "TriangulatedSurface",
     "checked_points",
     "face_shapes",
+    "mesh_domain",
+    "tessellate",
 ]

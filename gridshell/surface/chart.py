@@ -53,7 +53,7 @@ class Chart:
             for r, k in zip(rates, knots, strict=True)
         ]
         cell = (knots[0][1] - knots[0][0]) * (knots[1][1] - knots[1][0])
-        return cls(evaluate, *knots, *lengths, shear, area * cell)
+        return cls(evaluate, knots[0], knots[1], lengths[0], lengths[1], shear, area * cell)
 
     @property
     def area(self) -> float:

@@ -123,9 +123,7 @@ class _Web:
 
     def triangles(self) -> Indices:
         """Each triangle once."""
-        rows = {
-            min((a, b, c), (b, c, a), (c, a, b)) for (a, b), c in self.corner.items()
-        }
+        rows = {min((a, b, c), (b, c, a), (c, a, b)) for (a, b), c in self.corner.items()}
         return np.array(sorted(rows), dtype=np.int64)
 
     def recover(self, a: int, b: int, kept: set[tuple[int, int]]) -> None:

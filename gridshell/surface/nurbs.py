@@ -169,9 +169,7 @@ def basis_functions(knots: Floats, degree: int, t: Floats) -> tuple[Indices, Flo
         d_low, d_high = _shifted(first)
         second = p * (d_low * left - d_high * right_inverse)
         first = p * (low * left - high * right_inverse)
-        value = (t[:, None] - knots[i]) * left * low + (
-            right - t[:, None]
-        ) * right_inverse * high
+        value = (t[:, None] - knots[i]) * left * low + (right - t[:, None]) * right_inverse * high
     return span - degree, np.stack([value, first, second])
 
 

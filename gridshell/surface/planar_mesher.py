@@ -132,7 +132,7 @@ def _interior(chart: Chart, polygons: Sequence[Floats], edge: float) -> Floats:
     border = cKDTree(chart.derivatives(np.concatenate([corner, *halves])).x)
     free = border.query(places)[0] > _FROM_BOUNDARY * edge
     candidates, places = candidates[free], places[free]
-    return candidates[_apart(places, _SPACING * edge)]
+    return np.asarray(candidates[_apart(places, _SPACING * edge)])
 
 
 def _apart(places: Floats, distance: float) -> Mask:
@@ -277,9 +277,7 @@ def _angles(corners: Floats) -> Floats:
     """Angles (f, 3) at the corners of triangles (f, 3, 3); a right angle where a side vanishes."""
     ahead = np.roll(corners, -1, axis=1) - corners
     behind = np.roll(corners, 1, axis=1) - corners
-    angle: Floats = np.arctan2(
-        np.linalg.norm(np.cross(ahead, behind), axis=2), dot(ahead, behind)
-    )
+    angle: Floats = np.arctan2(np.linalg.norm(np.cross(ahead, behind), axis=2), dot(ahead, behind))
     short = (dot(ahead, ahead) == 0.0) | (dot(behind, behind) == 0.0)
     return np.where(short, np.pi / 2.0, angle)
 
