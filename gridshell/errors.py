@@ -20,9 +20,12 @@
     │   │   ├── DisconnectedError       a surface in several pieces
     │   │   ├── SelfIntersectionError   a surface that cuts through itself
     │   │   ├── PoorTriangulationError  slivers whose curvature cannot be told
-    │   │   └── NoisyInputError         vertices that scatter too far about any smooth surface
+    │   │   ├── NoisyInputError         vertices that scatter too far about any smooth surface
+    │   │   ├── NotOnePatchError        faces that are a solid, several patches, or none
+    │   │   └── NoMinimalSurfaceError   boundary curves that no minimal surface of that kind spans
     │   ├── SettingError                a number or a choice outside its limits
     │   └── FileError (OSError)         a file that is missing, unreadable or malformed
+    │       └── UnitError               a unit that is not stated, or contradicts the file's own
     └── SolveError (RuntimeError)       the optimisation ended without a usable net
 
 Each carries *what* went wrong, *where* (key, index, position), the *value* found, the *limit* it
@@ -146,12 +149,24 @@ class NoisyInputError(SurfaceError):
     """Vertices that scatter too far about any smooth surface."""
 
 
+class NotOnePatchError(SurfaceError):
+    """Faces that are a solid, several patches apart or branching, or no faces at all."""
+
+
+class NoMinimalSurfaceError(SurfaceError):
+    """Boundary curves that no minimal surface of the kind asked for spans."""
+
+
 class SettingError(InputError):
     """A number or a choice outside its limits."""
 
 
 class FileError(InputError, OSError):
     """A file that is missing, unreadable or malformed."""
+
+
+class UnitError(FileError):
+    """A unit that is not stated, or contradicts the one the file states."""
 
 
 class SolveError(GridshellError, RuntimeError):

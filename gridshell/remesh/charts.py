@@ -40,9 +40,7 @@ Affine = tuple[int, int, dict[int, int]]
 """Sign, root and integer combination: the value ``sign x_root + sum c_j j``."""
 
 
-def charts(
-    mesh: TriangleMesh, cut: Cut, singular: Mask, aligned: Mask, *, origin: int
-) -> Charts:
+def charts(mesh: TriangleMesh, cut: Cut, singular: Mask, aligned: Mask, *, origin: int) -> Charts:
     """Work out the unknowns of one coordinate.
 
     A shift of the whole chart changes nothing: one singular vertex or aligned run has the value
@@ -97,9 +95,7 @@ def _chains(mesh: TriangleMesh, cut: Cut, singular: Mask) -> tuple[Indices, Mask
     leaving: dict[int, list[int]] = defaultdict(list)
     for h in on_cut.tolist():
         leaving[int(mesh.origin[h])].append(h)
-    node = {
-        v for v, out in leaving.items() if len(out) != 2 or mesh.on_boundary[v] or singular[v]
-    }
+    node = {v for v, out in leaving.items() if len(out) != 2 or mesh.on_boundary[v] or singular[v]}
     count = 0
     starts = [h for v in sorted(node) for h in leaving[v]] + on_cut.tolist()
     for start in starts:

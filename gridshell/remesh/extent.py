@@ -88,10 +88,14 @@ def _completed(
         total[cell[np.arange(len(one)), k]] = total[a] + total[c] - total[b]
     good = np.isfinite(total[quads]).all(axis=(1, 2))
     corners = total[quads]
-    area = np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
+    area = np.linalg.norm(
+        np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1
+    )
     typical = total[whole] if len(whole) else corners
     size = np.median(
-        np.linalg.norm(np.cross(typical[:, 2] - typical[:, 0], typical[:, 3] - typical[:, 1]), axis=1)
+        np.linalg.norm(
+            np.cross(typical[:, 2] - typical[:, 0], typical[:, 3] - typical[:, 1]), axis=1
+        )
     )
     good &= area > (2.0 * _LEAST_SHARE if extent is Extent.TRIMMED else 0.0) * size
     return Cells(total, np.concatenate([whole, quads[good]]), len(ghosts))

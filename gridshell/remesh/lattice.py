@@ -117,9 +117,7 @@ def ports(chart: ExactChart) -> Ports:
     for halfedge, at, side in sides:
         item = np.flatnonzero(halfedge >= 0)
         place = size + 2 * item + side
-        rows.append(
-            _edge_rows(chart, halfedge[item], at[item], first_edge + item, place, side)
-        )
+        rows.append(_edge_rows(chart, halfedge[item], at[item], first_edge + item, place, side))
     item = np.arange(len(face))
     rows.append(_face_rows(face, in_face, first_face + item, size + 2 * len(edge) + item))
     owner, rank, place, faces, starts, axes, rim = (
@@ -230,9 +228,7 @@ Rows = tuple[Indices, Indices, Indices, Indices, Indices, Indices, Mask]
 def quarter(vectors: Indices) -> Indices:
     """The axis at or clockwise before every vector (..., 2)."""
     x, y = vectors[..., 0], vectors[..., 1]
-    return np.where(
-        (x > 0) & (y >= 0), 0, np.where((x <= 0) & (y > 0), 1, np.where((x < 0), 2, 3))
-    )
+    return np.where((x > 0) & (y >= 0), 0, np.where((x <= 0) & (y > 0), 1, np.where((x < 0), 2, 3)))
 
 
 def _vertex_rows(chart: ExactChart, corner: Indices, owner: Indices) -> Rows:

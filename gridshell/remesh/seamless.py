@@ -166,7 +166,9 @@ class _Work:
         for lines, across in ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0))):
             rise = 1.0 / (self.spacing * np.sin(field.angle))
             if by_factor:
-                rise = rise * integrating_factor(mesh, across * rise[:, None], lines, self.cut.flips)
+                rise = rise * integrating_factor(
+                    mesh, across * rise[:, None], lines, self.cut.flips
+                )
             target = Target(lines, across, rise, weight, lams)
             unknowns = self.unknowns[len(found)]
             found.append(coordinate(mesh, unknowns, target, self.engine))
@@ -207,5 +209,3 @@ def _flat(angle: Floats) -> Floats:
 def _turned(direction: Floats, side: float) -> Floats:
     """A quarter turn, counter-clockwise for side +1."""
     return np.stack([-side * direction[:, 1], side * direction[:, 0]], axis=1)
-
-

@@ -9,16 +9,20 @@ from gridshell.surface.analytic_revolution import (
     Torus,
 )
 from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
+from gridshell.surface.brep import BrepSurface
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.jets import CurvatureEstimate, curved_by_jets, estimated_curvature
+from gridshell.surface.planar_mesher import mesh_domain
 from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.surface_checks import Remark, aspects, sound_mesh
+from gridshell.surface.tessellation import ParameterDisk, tessellate
 from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
 
 __all__ = [
     "AnalyticSurface",
+    "BrepSurface",
     "Catenoid",
     "CurvatureEstimate",
     "CurvedMesh",
@@ -29,6 +33,7 @@ __all__ = [
     "Helicoid",
     "Hypar",
     "Hyperboloid",
+    "ParameterDisk",
     "Remark",
     "RevolutionSurface",
     "Scherk",
@@ -42,5 +47,7 @@ __all__ = [
     "curved_by_jets",
     "estimated_curvature",
     "face_shapes",
+    "mesh_domain",
     "sound_mesh",
+    "tessellate",
 ]
