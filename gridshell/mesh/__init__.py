@@ -10,6 +10,7 @@ from gridshell.mesh.control_mesh import (
 )
 from gridshell.mesh.diagonals import DiagonalMesh, diagonal_meshes
 from gridshell.mesh.grid import grid_quads
+from gridshell.mesh.pieces import main_piece
 from gridshell.mesh.polylines import Polyline, polylines
 from gridshell.mesh.quad_mesh import QuadMesh, oriented, position
 from gridshell.mesh.stars import Stars, diagonal_stars, edge_stars
@@ -29,6 +30,7 @@ __all__ = [
     "diagonal_stars",
     "edge_stars",
     "grid_quads",
+    "main_piece",
     "oriented",
     "polylines",
     "position",

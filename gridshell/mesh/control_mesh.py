@@ -13,7 +13,11 @@ import numpy as np
 from gridshell.arrays import Indices, Points, frozen
 from gridshell.errors import MeshError
 from gridshell.mesh.coloring import corner_parity, two_colouring
+from gridshell.mesh.pieces import main_piece
 from gridshell.mesh.quad_mesh import QuadMesh, position
+
+_LEAST_PIECE = 0.5
+"""More than this share of the quads hangs together over edges; what is hinged on is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +92,8 @@ def control_mesh(mesh: QuadMesh) -> ControlMesh:
     """The mesh C of the red vertices of *mesh*: its diagonals follow the edges of *mesh* (Fig. 6).
 
     Red is the colour of the singular vertices, so that every quad of C surrounds a regular blue
-    vertex. An edge of D1 spans two edges of *mesh*.
+    vertex. An edge of D1 spans two edges of *mesh*. Quads of C that touch the others in a vertex
+    only, as they occur at a ragged rim, are left out.
 
     Raises
     ------
@@ -120,21 +125,14 @@ def control_mesh(mesh: QuadMesh) -> ControlMesh:
             advice="use a finer mesh",
         )
     rings = mesh.target[mesh.fans[centres, :4]]
-    used, quads = np.unique(rings, return_inverse=True)
-    if not _joined(quads.reshape(rings.shape)):
+    kept = main_piece(rings)
+    if len(rings) > 1 and np.count_nonzero(kept) <= _LEAST_PIECE * len(rings):
         raise MeshError(
             "The mesh is too narrow to hold a control mesh",
             value=f"{len(mesh.quads)} quads",
             limit="three quads across everywhere",
             advice="use a finer mesh",
         )
+    rings = rings[kept]
+    used, quads = np.unique(rings, return_inverse=True)
     return as_control_mesh(QuadMesh(mesh.vertices[used], quads.reshape(rings.shape)))
-
-
-def _joined(quads: Indices) -> bool:
-    """Whether quads that share a vertex are joined by shared edges around it."""
-    shared = np.bincount(quads.ravel())
-    edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    _, inverse, uses = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
-    inner = np.bincount(edges[uses[inverse.ravel()] == 2].ravel(), minlength=len(shared)) // 2
-    return bool((inner >= shared - 1).all())

@@ -1,0 +1,272 @@
+"""The whole way from a curved surface to the quad mesh M along two families of directions."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from gridshell.arrays import Floats, Points
+from gridshell.errors import ColouringError, MeshError, SettingError, SurfaceError
+from gridshell.field import (
+    FieldReport,
+    FrameField,
+    Hand,
+    alignment,
+    cleaned,
+    field_report,
+    require_curvature,
+    singularities,
+)
+from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, main_piece, two_colouring
+from gridshell.remesh.directions import Conjugate, Directions
+from gridshell.remesh.extent import Cells, Extent, cells
+from gridshell.remesh.extraction import Extracted, extract
+from gridshell.remesh.lifting import lifted
+from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
+from gridshell.remesh.seamless import LADDER, Seamless, seamless
+from gridshell.solve import Engine
+from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface
+
+_LEAST_LAM = 10.0
+_LARGEST_STRAY = 5.0
+"""Degrees: 95th percentile of the alignment beyond which the field counts as not integrable."""
+
+
+@dataclass(frozen=True, eq=False)
+class Quadrangulation:
+    """The quad mesh M and how it came about.
+
+    Parameters
+    ----------
+    mesh : M, mm, vertices on the surface; its edges follow the two families.
+    curved, field : the working surface and the directions on it, refined at singular points.
+    chart : the seamless chart M was read off.
+    edge_points, edge_errors : (m, 3) middles of M's edges on the surface, mm, and (m,) their angle
+        to the field, radians: the heat map of the alignment.
+    report : all figures.
+    """
+
+    mesh: QuadMesh
+    curved: CurvedMesh
+    field: FrameField
+    chart: Seamless
+    edge_points: Points
+    edge_errors: Floats
+    report: RemeshReport
+
+    def control(self) -> ControlMesh:
+        """The control mesh C: one colour of M's vertices, that of the singular ones (Fig. 6 d).
+
+        Raises
+        ------
+        MeshError
+            When M is too small or too narrow to hold one.
+        """
+        return control_mesh(self.mesh)
+
+
+def quadrangulate(
+    curved: CurvedMesh,
+    directions: Directions,
+    *,
+    quads: int | None = None,
+    edge: float | None = None,
+    extent: Extent = Extent.COVER,
+    surface: Surface | None = None,
+    ladder: tuple[tuple[float, bool], ...] = LADDER,
+    align_boundary: bool = True,
+    engine: Engine | None = None,
+    remarks: tuple[Remark, ...] = (),
+) -> Quadrangulation:
+    """Find the quad mesh M on *curved* whose edges follow *directions*.
+
+    Parameters
+    ----------
+    quads, edge : how many quads, or how long their edges, mm: one of the two.
+    extent : how far M goes at the boundary.
+    surface : where the vertices are put in the end; the quadrics of *curved* when None.
+    ladder : weights of direction against spacing to try; ``((1.0, False),)`` is the isotropic
+        energy of mixed-integer quadrangulation.
+    align_boundary : keep boundaries that run along a family as lines of M.
+    engine : solver of the linear systems.
+    remarks : what is already known of the surface, for the report.
+
+    Raises
+    ------
+    SettingError
+        When neither or both of *quads* and *edge* are given, or one is not positive.
+    SurfaceError
+        One of its kinds: flat, umbilic, not hyperbolic, angle infeasible, pole, too many
+        singularities, or too few cells for a mesh.
+    """
+    start = time.perf_counter()
+    require_curvature(curved)
+    field = directions.field(curved)
+    spacing = _spacing(field, quads, edge)
+    refined = cleaned(curved, field, spacing)
+    turns = singularities(refined.field)
+    chart = seamless(
+        refined.field, turns, spacing, ladder=ladder, align_boundary=align_boundary, engine=engine
+    )
+    found = extract(chart)
+    positions = lifted(refined.curved, found.faces, found.weights)
+    if surface is not None and len(positions):
+        positions = surface.closest(positions).points
+    made = cells(found, positions, extent)
+    mesh = _tidy(made, spacing)
+    points, errors = _strays(found, refined.field)
+    hand = directions.hand if isinstance(directions, Conjugate) else None
+    about = field_report(refined.curved, refined.field, hand=hand)
+    report = _report(
+        mesh,
+        chart,
+        about,
+        refined.curved,
+        Spread.of(np.degrees(errors)),
+        found,
+        spacing,
+        remarks,
+        time.perf_counter() - start,
+    )
+    return Quadrangulation(mesh, refined.curved, refined.field, chart, points, errors, report)
+
+
+def _spacing(field: FrameField, quads: int | None, edge: float | None) -> float:
+    if (quads is None) == (edge is None):
+        raise SettingError(
+            "The size of the quads must be given once",
+            where="quads, edge",
+            value="neither" if quads is None else "both",
+            limit="a number of quads or the length of their edges",
+        )
+    value = float(quads if quads is not None else edge or 0.0)
+    if not (np.isfinite(value) and value > 0.0):
+        raise SettingError(
+            "The size of the quads must be positive",
+            where="quads" if quads is not None else "edge",
+            value=f"{value:g}",
+            limit="> 0",
+        )
+    if edge is not None:
+        return value
+    return float(np.sqrt((field.mesh.areas / np.sin(field.angle)).sum() / value))
+
+
+def _tidy(made: Cells, spacing: float) -> QuadMesh:
+    """The main piece of the cells."""
+    quads = made.quads[main_piece(made.quads)]
+    if len(quads) == 0:
+        raise SurfaceError(
+            "No quad fits on the surface",
+            value=f"edges of {spacing:.4g} mm",
+            advice="more quads, or a shorter edge",
+        )
+    used, compact = np.unique(quads, return_inverse=True)
+    return QuadMesh(made.positions[used], compact.reshape(-1, 4))
+
+
+def _strays(found: Extracted, field: FrameField) -> tuple[Points, Floats]:
+    """Middles of the edges between crossings and their angles to the field."""
+    port = np.flatnonzero(found.traced.reverse > np.arange(len(found.ports.owner)))
+    flat = np.einsum("mk,mkc->mc", found.weights, field.mesh.corners[found.faces])
+    a = flat[found.ports.owner[port]]
+    b = flat[found.ports.owner[found.traced.reverse[port]]]
+    if len(port) == 0:
+        return a, np.zeros(0)
+    middle = (a + b) / 2.0
+    faces, _ = TriangulatedSurface(field.mesh.vertices, field.mesh.triangles).feet(middle)
+    families = np.where(found.ports.axes[port] % 2 == 0, 1, 2)
+    return middle, alignment(field, faces, middle, b - a, families)
+
+
+def _report(
+    mesh: QuadMesh,
+    chart: Seamless,
+    about: FieldReport,
+    curved: CurvedMesh,
+    stray: Spread,
+    found: Extracted,
+    spacing: float,
+    remarks: tuple[Remark, ...],
+    seconds: float,
+) -> RemeshReport:
+    inner = ~mesh.on_boundary
+    conflicts, control_quads = _colours(mesh)
+    low, middle, high = np.percentile(mesh.edge_lengths / spacing, [5, 50, 95]).tolist()
+    angles = np.degrees(about.angles).tolist()
+    under = coverage(curved, TriangulatedSurface.of_quads(mesh.vertices, mesh.quads), spacing)
+    spikes = tuple(
+        Spike((float(p[0]), float(p[1]), float(p[2])), float(i), int(v))
+        for p, i, v in zip(about.positions, about.indices, about.valences, strict=True)
+    )
+    integers = [c.integers for c in chart.coordinates]
+    return RemeshReport(
+        quads=len(mesh.quads),
+        non_quads=found.non_quads,
+        odd_valences=int(np.count_nonzero(mesh.valence[inner] % 2)),
+        colour_conflicts=conflicts,
+        control_quads=control_quads,
+        singularities=spikes,
+        alignment_deg=stray,
+        coverage=under,
+        edge_ratio=(low, middle, high),
+        spacing_mm=spacing,
+        infeasible_area=about.infeasible_area,
+        umbilic_area=about.umbilic_area,
+        angle_deg=(angles[1], angles[2], angles[3]),
+        hand=None if about.hand is None else about.hand.name.lower(),
+        lam=chart.lam,
+        flips=len(chart.folded),
+        wrong_cones=len(chart.cones),
+        integers=sum(len(i.integers) for i in integers),
+        integers_exact=all(i.exact for i in integers),
+        triangles=len(curved.mesh.triangles),
+        remarks=(*remarks, *_findings(chart, about, stray, control_quads)),
+        seconds=seconds,
+    )
+
+
+def _colours(mesh: QuadMesh) -> tuple[int, int]:
+    """Conflicts of M's colours, and faces of C."""
+    try:
+        two_colouring(mesh)
+    except ColouringError:
+        return 1, 0
+    try:
+        return 0, len(control_mesh(mesh).quads)
+    except MeshError:
+        return 0, 0
+
+
+def _findings(
+    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int
+) -> list[Remark]:
+    found = []
+    if chart.lam <= _LEAST_LAM or stray.p95 > _LARGEST_STRAY:
+        found.append(
+            Remark(
+                "not-integrable",
+                f"the directions cannot be followed evenly: the edges are off by {stray.mean:.1f} "
+                f"degrees on average, {stray.p95:.1f} for the 95th of a hundred; try a hole at a "
+                "singular point, another angle, or a smaller part of the surface",
+                stray.p95,
+            )
+        )
+    if about.infeasible_area > 0.0:
+        effect = "; the angle has no effect anywhere" if about.infeasible_area > 1.0 - 1e-9 else ""
+        found.append(
+            Remark(
+                "angle-infeasible",
+                f"{about.infeasible_area:.1%} of the area has no such pair of directions; the "
+                f"angles reached are {np.degrees(about.angles[0]):.1f} to "
+                f"{np.degrees(about.angles[-1]):.1f} degrees{effect}",
+                about.infeasible_area,
+            )
+        )
+    if control_quads == 0:
+        found.append(
+            Remark("too-coarse", "the quads are too few to hold a control mesh; ask for more", 0.0)
+        )
+    return found
