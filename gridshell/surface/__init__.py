@@ -12,6 +12,7 @@ from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.jets import CurvatureEstimate, curved_by_jets, estimated_curvature
+from gridshell.surface.smooth_surface import SmoothSurface, lift
 from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.surface_checks import Remark, aspects, sound_mesh
 from gridshell.surface.triangle_mesh import TriangleMesh
@@ -32,6 +33,7 @@ __all__ = [
     "Remark",
     "RevolutionSurface",
     "Scherk",
+    "SmoothSurface",
     "Sphere",
     "Surface",
     "Torus",
@@ -42,5 +44,6 @@ __all__ = [
     "curved_by_jets",
     "estimated_curvature",
     "face_shapes",
+    "lift",
     "sound_mesh",
 ]
