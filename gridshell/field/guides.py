@@ -160,7 +160,7 @@ def _on_triangles(mesh: TriangleMesh, guide: Guide) -> tuple[Indices, Complex]:
     """Triangles (k,) under a guide and its line in each of their frames as exp(2 i angle), (k,)."""
     surface = TriangulatedSurface(mesh.vertices, mesh.triangles)
     points, tangents = guide.samples(mesh.mean_edge / 2.0)
-    faces, _ = surface.feet(points)
+    faces, _ = surface.locate(points)
     local = np.einsum("nic,nc->ni", mesh.face_frames[faces, :2], tangents)
     squared: Complex = (local[:, 0] + 1j * local[:, 1]) ** 2
     used, slot = np.unique(faces, return_inverse=True)

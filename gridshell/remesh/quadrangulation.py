@@ -23,11 +23,10 @@ from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, main_piece, two_
 from gridshell.remesh.directions import Conjugate, Directions
 from gridshell.remesh.extent import Cells, Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
-from gridshell.remesh.lifting import lifted
 from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
 from gridshell.remesh.seamless import LADDER, Seamless, seamless
 from gridshell.solve import Engine
-from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface
+from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
 
 _LEAST_LAM = 10.0
 _LARGEST_STRAY = 5.0
@@ -111,7 +110,7 @@ def quadrangulate(
         refined.field, turns, spacing, ladder=ladder, align_boundary=align_boundary, engine=engine
     )
     found = extract(chart)
-    positions = lifted(refined.curved, found.faces, found.weights)
+    positions = lift(refined.curved, found.faces, found.weights)
     if surface is not None and len(positions):
         positions = surface.closest(positions).points
     made = cells(found, positions, extent)
@@ -176,7 +175,7 @@ def _strays(found: Extracted, field: FrameField) -> tuple[Points, Floats]:
     if len(port) == 0:
         return a, np.zeros(0)
     middle = (a + b) / 2.0
-    faces, _ = TriangulatedSurface(field.mesh.vertices, field.mesh.triangles).feet(middle)
+    faces, _ = TriangulatedSurface(field.mesh.vertices, field.mesh.triangles).locate(middle)
     families = np.where(found.ports.axes[port] % 2 == 0, 1, 2)
     return middle, alignment(field, faces, middle, b - a, families)
 

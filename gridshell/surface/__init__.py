@@ -14,6 +14,7 @@ from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.jets import CurvatureEstimate, curved_by_jets, estimated_curvature
 from gridshell.surface.planar_mesher import mesh_domain
+from gridshell.surface.smooth_surface import SmoothSurface, lift
 from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.surface_checks import Remark, aspects, sound_mesh
 from gridshell.surface.tessellation import ParameterDisk, tessellate
@@ -37,6 +38,7 @@ __all__ = [
     "Remark",
     "RevolutionSurface",
     "Scherk",
+    "SmoothSurface",
     "Sphere",
     "Surface",
     "Torus",
@@ -48,6 +50,7 @@ __all__ = [
     "estimated_curvature",
     "face_shapes",
     "mesh_domain",
+    "lift",
     "sound_mesh",
     "tessellate",
 ]

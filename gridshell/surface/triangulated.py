@@ -72,13 +72,13 @@ class TriangulatedSurface:
     def closest(self, points: Points) -> Foot:
         """Find the feet of *points* (n, 3), mm."""
         points = checked_points(points)
-        triangle, weights = self.feet(points)
+        triangle, weights = self.locate(points)
         corners = self.triangles[triangle]
         feet = np.einsum("nk,nkc->nc", weights, self.vertices[corners])
         normals = unit(np.einsum("nk,nkc->nc", weights, self._vertex_normals[corners]))
         return Foot(feet, normals, self._curvatures[triangle])
 
-    def feet(self, points: Points) -> tuple[Indices, Floats]:
+    def locate(self, points: Points) -> tuple[Indices, Floats]:
         """Nearest triangle (n,) and barycentric weights (n, 3) of the foot in it.
 
         Candidates are the triangles with the nearest centroids; a foot is final when no triangle
@@ -92,7 +92,7 @@ class TriangulatedSurface:
             for block in np.array_split(rows, max(1, len(rows) * count // _BLOCK)):
                 away, near = self._tree.query(points[block], k=count)
                 away, near = away.reshape(len(block), -1), near.reshape(len(block), -1)
-                share, distance = self._nearest_in(points[block], near)
+                share, distance = self.nearest_in(points[block], near)
                 pick = np.argmin(distance, axis=1)
                 line = np.arange(len(block))
                 best[block], weights[block] = near[line, pick], share[line, pick]
@@ -101,7 +101,7 @@ class TriangulatedSurface:
             rows, count = np.concatenate(unsure), min(2 * count, len(self.triangles))
         return best, weights
 
-    def _nearest_in(self, points: Points, near: Indices) -> tuple[Floats, Floats]:
+    def nearest_in(self, points: Points, near: Indices) -> tuple[Floats, Floats]:
         """Barycentric weights (n, k, 3) and distances (n, k) in candidate triangles (n, k)."""
         corners = self.vertices[self.triangles[near]]
         weights = _barycentric(points[:, None], corners)

@@ -54,7 +54,7 @@ def test_edges_along_exact_lines_have_almost_no_error(
     rng = np.random.default_rng(3)
     u, v = rng.uniform(-0.6, 0.6, (2, 400))
     d = surface.derivatives(u, v)
-    faces, _ = TriangulatedSurface(curved.mesh.vertices, curved.mesh.triangles).feet(d.x)
+    faces, _ = TriangulatedSurface(curved.mesh.vertices, curved.mesh.triangles).locate(d.x)
     edges = [d.xu + d.xv, d.xu - d.xv]
     errors = [np.degrees(alignment(field, faces, d.x, e, np.full(len(u), family))) for e in edges]
     right = min(errors, key=np.mean)
