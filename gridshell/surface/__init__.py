@@ -12,6 +12,7 @@ from gridshell.surface.analytic_shapes import Enneper, Helicoid, Hypar, Scherk
 from gridshell.surface.brep import BrepSurface
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
+from gridshell.surface.minimal import minimal_surface
 from gridshell.surface.planar_mesher import mesh_domain
 from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.tessellation import ParameterDisk, tessellate
@@ -41,5 +42,6 @@ __all__ = [
     "checked_points",
     "face_shapes",
     "mesh_domain",
+    "minimal_surface",
     "tessellate",
 ]
