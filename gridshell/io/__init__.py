@@ -1,5 +1,7 @@
 """Files of nets and meshes."""
 
+from gridshell.io.brep_file import read_brep
+from gridshell.io.curve_file import read_curves
 from gridshell.io.net_json import read_net, write_net
 from gridshell.io.obj import Unit, read_obj, write_obj
 from gridshell.io.state_file import read_state, write_state
@@ -7,6 +9,8 @@ from gridshell.io.surface_file import read_surface
 
 __all__ = [
     "Unit",
+    "read_brep",
+    "read_curves",
     "read_net",
     "read_obj",
     "read_state",

@@ -13,6 +13,7 @@ from gridshell.surface.brep import BrepSurface
 from gridshell.surface.curved_mesh import CurvedMesh, face_shapes
 from gridshell.surface.forms import Derivatives
 from gridshell.surface.jets import CurvatureEstimate, curved_by_jets, estimated_curvature
+from gridshell.surface.minimal import minimal_surface
 from gridshell.surface.planar_mesher import mesh_domain
 from gridshell.surface.smooth_surface import SmoothSurface, lift
 from gridshell.surface.surface import Foot, Surface, checked_points
@@ -49,8 +50,9 @@ __all__ = [
     "curved_by_jets",
     "estimated_curvature",
     "face_shapes",
-    "mesh_domain",
     "lift",
+    "mesh_domain",
+    "minimal_surface",
     "sound_mesh",
     "tessellate",
 ]

@@ -1,0 +1,79 @@
+"""Design surfaces from STEP, IGES and BREP files."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from gridshell.errors import UnitError
+from gridshell.io.obj import Unit
+from gridshell.surface import BrepSurface
+
+
+def read_brep(
+    path: Path | str, *, unit: Unit | None = None, tolerance: float | None = None
+) -> BrepSurface:
+    """Read the faces of a STEP, IGES or BREP file, sewn into one patch, mm.
+
+    Parameters
+    ----------
+    unit : STEP and IGES files state their own unit; it may be repeated here, not changed. A BREP
+        file states none and needs one.
+    tolerance : gaps up to this, mm, are sewn; a 50,000th of the size when None.
+
+    Raises
+    ------
+    FileError
+        When the file is missing, cannot be read or has another extension.
+    UnitError
+        When a BREP file comes without a unit, or *unit* contradicts the file.
+    NotOnePatchError
+        No faces, a solid, several patches, or one that branches.
+    SurfaceError
+        A patch with one side only, or a broken outline.
+    """
+    from gridshell.surface.brep_kernel import model_of
+
+    shape, scale = load_with_scale(Path(path), unit)
+    sewn = None if tolerance is None else tolerance / scale
+    return BrepSurface(model_of(shape, tolerance=sewn).scaled(scale))
+
+
+def load_with_scale(path: Path, unit: Unit | None) -> tuple[Any, float]:
+    """A kernel shape and the size of its unit, mm: 1 for files that state their unit.
+
+    Raises
+    ------
+    FileError, UnitError
+        As `read_brep` does.
+    """
+    from gridshell.surface.brep_kernel import load_shape
+
+    shape, own = load_shape(path)
+    if not own:
+        if unit is None:
+            raise UnitError(
+                "A BREP file states no unit",
+                where=str(path),
+                limit=", ".join(u.name.lower() for u in Unit),
+                advice="give the unit the file was drawn in",
+            )
+        return shape, unit.value
+    odd = [size for size in own if not (unit is None or math.isclose(size, unit.value))]
+    if odd and unit is not None:
+        raise UnitError(
+            "The unit given contradicts the file's own",
+            where=str(path),
+            value=f"{unit.name.lower()}; the file says {_name(odd[0])}",
+            advice="leave the unit out: the file states it",
+        )
+    return shape, 1.0
+
+
+def _name(size: float) -> str:
+    """The unit of *size* mm."""
+    for unit in Unit:
+        if math.isclose(size, unit.value):
+            return unit.name.lower()
+    return "an unknown unit" if math.isnan(size) else f"{size:.6g} mm"
