@@ -17,6 +17,7 @@ from gridshell.surface.surface import Foot, Surface, checked_points
 from gridshell.surface.surface_checks import Remark, aspects, sound_mesh
 from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
+from gridshell.surface.working_mesh import working_mesh
 
 __all__ = [
     "AnalyticSurface",
@@ -46,4 +47,5 @@ __all__ = [
     "face_shapes",
     "lift",
     "sound_mesh",
+    "working_mesh",
 ]
