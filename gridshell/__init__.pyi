@@ -28,12 +28,16 @@ from .curvature import (
 from .curvature import (
     require_hyperbolic as require_hyperbolic,
 )
+from .errors import AngleInfeasibleError as AngleInfeasibleError
 from .errors import (
     ColouringError as ColouringError,
 )
+from .errors import DegenerateSurfaceError as DegenerateSurfaceError
+from .errors import DisconnectedError as DisconnectedError
 from .errors import (
     FileError as FileError,
 )
+from .errors import FlatSurfaceError as FlatSurfaceError
 from .errors import (
     GridshellError as GridshellError,
 )
@@ -43,18 +47,24 @@ from .errors import (
 from .errors import (
     MeshError as MeshError,
 )
+from .errors import NoisyInputError as NoisyInputError
+from .errors import NoMinimalSurfaceError as NoMinimalSurfaceError
 from .errors import (
     NonManifoldError as NonManifoldError,
 )
 from .errors import (
     NotHyperbolicError as NotHyperbolicError,
 )
+from .errors import NotOnePatchError as NotOnePatchError
 from .errors import (
     OddValenceError as OddValenceError,
 )
 from .errors import (
     OrientationError as OrientationError,
 )
+from .errors import PoleSingularityError as PoleSingularityError
+from .errors import PoorTriangulationError as PoorTriangulationError
+from .errors import SelfIntersectionError as SelfIntersectionError
 from .errors import (
     SettingError as SettingError,
 )
@@ -64,9 +74,18 @@ from .errors import (
 from .errors import (
     SurfaceError as SurfaceError,
 )
+from .errors import TooManySingularitiesError as TooManySingularitiesError
+from .errors import UmbilicRegionError as UmbilicRegionError
+from .errors import UnitError as UnitError
+from .field import FrameField as FrameField
+from .field import Guide as Guide
+from .field import Hand as Hand
+from .field import Infeasible as Infeasible
 from .io import (
     Unit as Unit,
 )
+from .io import read_brep as read_brep
+from .io import read_curves as read_curves
 from .io import (
     read_net as read_net,
 )
@@ -118,6 +137,7 @@ from .mesh import (
 from .mesh import (
     edge_stars as edge_stars,
 )
+from .mesh import main_piece as main_piece
 from .mesh import (
     oriented as oriented,
 )
@@ -180,6 +200,17 @@ from .recipes import (
 from .recipes import (
     principal_symmetric_net as principal_symmetric_net,
 )
+from .remesh import Asymptotic as Asymptotic
+from .remesh import Conjugate as Conjugate
+from .remesh import Directions as Directions
+from .remesh import Extent as Extent
+from .remesh import Given as Given
+from .remesh import Principal as Principal
+from .remesh import Quadrangulation as Quadrangulation
+from .remesh import RemeshReport as RemeshReport
+from .remesh import WorkingSurface as WorkingSurface
+from .remesh import quadrangulate as quadrangulate
+from .remesh import working_surface as working_surface
 from .solve import End as End
 from .solve import Engine as Engine
 from .solve import Progress as Progress
@@ -192,9 +223,11 @@ from .soundness import require_sound as require_sound
 from .surface import (
     AnalyticSurface as AnalyticSurface,
 )
+from .surface import BrepSurface as BrepSurface
 from .surface import (
     Catenoid as Catenoid,
 )
+from .surface import CurvedMesh as CurvedMesh
 from .surface import (
     Enneper as Enneper,
 )
@@ -210,9 +243,12 @@ from .surface import (
 from .surface import (
     Hyperboloid as Hyperboloid,
 )
+from .surface import ParameterDisk as ParameterDisk
+from .surface import Remark as Remark
 from .surface import (
     Scherk as Scherk,
 )
+from .surface import SmoothSurface as SmoothSurface
 from .surface import (
     Sphere as Sphere,
 )
@@ -222,7 +258,11 @@ from .surface import (
 from .surface import (
     Torus as Torus,
 )
+from .surface import TriangleMesh as TriangleMesh
 from .surface import TriangulatedSurface as TriangulatedSurface
+from .surface import minimal_surface as minimal_surface
+from .surface import sound_mesh as sound_mesh
+from .surface import tessellate as tessellate
 from .terms import (
     Planarity as Planarity,
 )

@@ -16,6 +16,7 @@ from gridshell.remesh.extent import Extent
 from gridshell.remesh.quadrangulation import Quadrangulation, quadrangulate
 from gridshell.remesh.remesh_report import RemeshReport, Spike
 from gridshell.remesh.seamless import LADDER
+from gridshell.remesh.working_surface import Source, WorkingSurface, working_surface
 
 __all__ = [
     "LADDER",
@@ -27,6 +28,9 @@ __all__ = [
     "Principal",
     "Quadrangulation",
     "RemeshReport",
+    "Source",
     "Spike",
+    "WorkingSurface",
     "quadrangulate",
+    "working_surface",
 ]

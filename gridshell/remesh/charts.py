@@ -2,7 +2,7 @@
 
 On the surface cut open every corner of a triangle has a value. Corners around a vertex that no cut
 separates share it (a wedge). Across the cut ``x' = s x + j`` with s = +-1 and one integer j per
-chain of cut edges (REMESH, fact 4); at singular vertices and along boundaries that follow the
+chain of cut edges; at singular vertices and along boundaries that follow the
 family the value itself is an integer. What the equations leave free are the unknowns.
 """
 

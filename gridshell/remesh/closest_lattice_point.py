@@ -1,8 +1,8 @@
 """The integer vector closest to a real one in a positive definite form, exactly.
 
-Schnorr and Euchner's enumeration (Lattice basis reduction, Math. Programming 66, 1994): integers are
-tried from the last coordinate to the first, nearest values first, and branches that cannot beat the
-best one found are left out. The first vector tried is Babai's, the greedy rounding.
+Schnorr and Euchner's enumeration (Lattice basis reduction, Math. Programming 66, 1994): integers
+are tried from the last coordinate to the first, nearest values first, and branches that cannot beat
+the best one found are left out. The first vector tried is Babai's, the greedy rounding.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How far the quad mesh goes: whole cells only, cells that cover the rim, or cells cut at the rim.
 
 A cell at the rim is a chain of crossings that follow each other around it. Its missing corners are
-*ghosts*: each hangs on a port whose line leaves the surface, or would leave a crossing outside of it.
+*ghosts*: each hangs on a way whose line leaves the surface, or leaves a crossing outside of it.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def cells(found: Extracted, positions: Points, extent: Extent) -> Cells:
     names = sorted({rim.name(c) for cell in open_cells for c in cell if isinstance(c, tuple)})
     number = {name: len(positions) + i for i, name in enumerate(names)}
     keys: dict[tuple[int, int], list[tuple[int, int]]] = {name: [] for name in names}
-    for key in rim.keys():
+    for key in rim.ghost_ways():
         if rim.name(key) in keys:
             keys[rim.name(key)].append(key)
     place = rim.ending if extent is Extent.TRIMMED else rim.continued
@@ -141,7 +141,7 @@ class _Rim:
         whole = bool(self.found.ports.whole[crossing])
         return self.ways(crossing) if whole else max(4, self.ways(crossing))
 
-    def keys(self) -> list[Key]:
+    def ghost_ways(self) -> list[Key]:
         """Every way that leads to a ghost."""
         rim = np.flatnonzero(~self.found.ports.whole)
         loose = np.unique(self.owner[self.reverse < 0])

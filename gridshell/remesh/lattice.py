@@ -1,8 +1,8 @@
 """Where the integer lines of a chart cross: the vertices of the quad mesh and their ports.
 
 Everything here is in exact integers: chart positions are multiples of ``1 / UNIT``. A crossing lies
-at a vertex of the triangles, on an edge, or inside a triangle. A *port* is one of the axis directions
-0, 1, 2, 3 (+u, +v, -u, -v) in which a line leaves a crossing. A direction belongs to the sector
+at a vertex of the triangles, on an edge, or inside a triangle. A *port* is one of the axis
+directions 0, 1, 2, 3 (+u, +v, -u, -v) in which a line leaves a crossing. A direction belongs to the sector
 (start, end] of one triangle: a line along an edge runs in the triangle on its right.
 """
 
@@ -81,8 +81,8 @@ class Ports:
     face, at : (c,) a triangle with the crossing in it, and (c, 2) its position in that chart.
     whole : (c,) whether it is surrounded by the surface.
     owner : (p,) crossing of every port, ascending; its ports go round counter-clockwise.
-    faces, starts, axes : (p,), (p, 2), (p,) the triangle a port starts into, the crossing's position
-        and the axis in that chart.
+    faces, starts, axes : (p,), (p, 2), (p,) the triangle a port starts into, the crossing's
+        position and the axis in that chart.
     rim : (p,) lines along the boundary with the surface on their left: run in the triangle there.
     keys, order : (p,) ascending keys ``4 place + axis`` and the port of each.
     edge_keys : (e,) ascending keys of crossings on edges: half-edge and distance from its origin.
@@ -120,9 +120,10 @@ def ports(chart: ExactChart) -> Ports:
         rows.append(_edge_rows(chart, halfedge[item], at[item], first_edge + item, place, side))
     item = np.arange(len(face))
     rows.append(_face_rows(face, in_face, first_face + item, size + 2 * len(edge) + item))
-    owner, rank, place, faces, starts, axes, rim = (
-        np.concatenate([row[i] for row in rows]) for i in range(7)
+    owner, rank, place, faces, starts, axes = (
+        np.concatenate([row[i] for row in rows]) for i in range(6)
     )
+    rim: Mask = np.concatenate([row[6] for row in rows])
     order = np.lexsort((rank, owner))
     owner, place, faces, starts, axes, rim = (
         x[order] for x in (owner, place, faces, starts, axes, rim)
@@ -148,7 +149,7 @@ def ports(chart: ExactChart) -> Ports:
     )
 
 
-# ---- crossings ------------------------------------------------------------------------------------
+# ---- crossings ----------------------------------------------------------------------------------
 
 
 def _on_vertices(chart: ExactChart) -> tuple[Indices, Indices]:
@@ -219,7 +220,7 @@ def edge_key(chart: ExactChart, halfedge: Indices, at: Indices) -> Indices:
     return np.asarray(name * _REACH + np.abs(at - chart.flat[start]).sum(axis=1))
 
 
-# ---- ports ----------------------------------------------------------------------------------------
+# ---- ports --------------------------------------------------------------------------------------
 
 Rows = tuple[Indices, Indices, Indices, Indices, Indices, Indices, Mask]
 """Owner, rank around it, place in the key, triangle, position, axis, rim."""

@@ -1,8 +1,9 @@
 """Two coordinates whose integer lines follow two families of directions.
 
-For each family the anisotropic Poisson energy of REMESH, step 7, is minimised over the real unknowns
-and the integers at once: the field says where the lines run (weight *lam*), and the spacing gives
-way. Integers are found exactly, by the closest lattice point in the reduced form.
+For each family an anisotropic Poisson energy is minimised over the real unknowns and the integers at
+once: the field says where the lines run (weight *lam*), and the spacing gives way. With *lam* = 1 it
+is the energy of mixed-integer quadrangulation (Bommes, Zimmer and Kobbelt 2009). Integers are found
+exactly, by the closest lattice point in the reduced form.
 """
 
 from __future__ import annotations
@@ -129,7 +130,7 @@ def winding(mesh: TriangleMesh, corners: Floats) -> tuple[Floats, Floats]:
     cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
     angle = np.arctan2(cross, (ahead * back).sum(axis=2))
     total = np.bincount(mesh.origin, angle.ravel(), len(mesh.vertices))
-    return area, total
+    return np.asarray(area), np.asarray(total, dtype=np.float64)
 
 
 def ring(mesh: TriangleMesh, vertices: Indices, times: int) -> Indices:
@@ -138,6 +139,6 @@ def ring(mesh: TriangleMesh, vertices: Indices, times: int) -> Indices:
     near[vertices] = True
     touched = np.zeros(len(mesh.triangles), dtype=bool)
     for _ in range(times):
-        touched = near[mesh.triangles].any(axis=1)
+        touched = np.asarray(near[mesh.triangles].any(axis=1))
         near[mesh.triangles[touched]] = True
     return np.flatnonzero(touched)

@@ -12,7 +12,6 @@ from gridshell.errors import ColouringError, MeshError, SettingError, SurfaceErr
 from gridshell.field import (
     FieldReport,
     FrameField,
-    Hand,
     alignment,
     cleaned,
     field_report,
@@ -25,6 +24,7 @@ from gridshell.remesh.extent import Cells, Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
 from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
 from gridshell.remesh.seamless import LADDER, Seamless, seamless
+from gridshell.remesh.working_surface import Source, WorkingSurface, area_of, working_surface
 from gridshell.solve import Engine
 from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
 
@@ -40,6 +40,7 @@ class Quadrangulation:
     Parameters
     ----------
     mesh : M, mm, vertices on the surface; its edges follow the two families.
+    reference : the surface itself, to keep nets close to.
     curved, field : the working surface and the directions on it, refined at singular points.
     chart : the seamless chart M was read off.
     edge_points, edge_errors : (m, 3) middles of M's edges on the surface, mm, and (m,) their angle
@@ -48,6 +49,7 @@ class Quadrangulation:
     """
 
     mesh: QuadMesh
+    reference: Surface
     curved: CurvedMesh
     field: FrameField
     chart: Seamless
@@ -67,30 +69,27 @@ class Quadrangulation:
 
 
 def quadrangulate(
-    curved: CurvedMesh,
+    source: Source | WorkingSurface,
     directions: Directions,
     *,
     quads: int | None = None,
     edge: float | None = None,
     extent: Extent = Extent.COVER,
-    surface: Surface | None = None,
     ladder: tuple[tuple[float, bool], ...] = LADDER,
     align_boundary: bool = True,
     engine: Engine | None = None,
-    remarks: tuple[Remark, ...] = (),
 ) -> Quadrangulation:
-    """Find the quad mesh M on *curved* whose edges follow *directions*.
+    """Find the quad mesh M on a surface whose edges follow *directions*.
 
     Parameters
     ----------
+    source : triangles, B-rep faces, a formula, or what :func:`working_surface` made of them.
     quads, edge : how many quads, or how long their edges, mm: one of the two.
     extent : how far M goes at the boundary.
-    surface : where the vertices are put in the end; the quadrics of *curved* when None.
     ladder : weights of direction against spacing to try; ``((1.0, False),)`` is the isotropic
         energy of mixed-integer quadrangulation.
     align_boundary : keep boundaries that run along a family as lines of M.
     engine : solver of the linear systems.
-    remarks : what is already known of the surface, for the report.
 
     Raises
     ------
@@ -101,6 +100,12 @@ def quadrangulate(
         singularities, or too few cells for a mesh.
     """
     start = time.perf_counter()
+    ready = (
+        source
+        if isinstance(source, WorkingSurface)
+        else working_surface(source, quads=_about_quads(source, quads, edge))
+    )
+    curved = ready.curved
     require_curvature(curved)
     field = directions.field(curved)
     spacing = _spacing(field, quads, edge)
@@ -111,8 +116,8 @@ def quadrangulate(
     )
     found = extract(chart)
     positions = lift(refined.curved, found.faces, found.weights)
-    if surface is not None and len(positions):
-        positions = surface.closest(positions).points
+    if ready.exact and len(positions):
+        positions = ready.reference.closest(positions).points
     made = cells(found, positions, extent)
     mesh = _tidy(made, spacing)
     points, errors = _strays(found, refined.field)
@@ -126,13 +131,21 @@ def quadrangulate(
         Spread.of(np.degrees(errors)),
         found,
         spacing,
-        remarks,
+        ready.remarks,
         time.perf_counter() - start,
     )
-    return Quadrangulation(mesh, refined.curved, refined.field, chart, points, errors, report)
+    return Quadrangulation(
+        mesh, ready.reference, refined.curved, refined.field, chart, points, errors, report
+    )
 
 
-def _spacing(field: FrameField, quads: int | None, edge: float | None) -> float:
+def _about_quads(source: Source, quads: int | None, edge: float | None) -> float:
+    """Quads to expect, for the fineness of the triangles."""
+    _require_one(quads, edge)
+    return float(quads) if quads is not None else area_of(source) / float(edge or 1.0) ** 2
+
+
+def _require_one(quads: int | None, edge: float | None) -> None:
     if (quads is None) == (edge is None):
         raise SettingError(
             "The size of the quads must be given once",
@@ -148,9 +161,13 @@ def _spacing(field: FrameField, quads: int | None, edge: float | None) -> float:
             value=f"{value:g}",
             limit="> 0",
         )
+
+
+def _spacing(field: FrameField, quads: int | None, edge: float | None) -> float:
+    _require_one(quads, edge)
     if edge is not None:
-        return value
-    return float(np.sqrt((field.mesh.areas / np.sin(field.angle)).sum() / value))
+        return float(edge)
+    return float(np.sqrt((field.mesh.areas / np.sin(field.angle)).sum() / float(quads or 1)))
 
 
 def _tidy(made: Cells, spacing: float) -> QuadMesh:

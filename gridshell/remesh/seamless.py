@@ -1,7 +1,7 @@
 """The seamless chart of a frame field: coordinates u, v whose integer lines are the quad mesh.
 
-The ladder of REMESH, step 9: the alignment weight is lowered only as far as the chart needs to be
-free of folds and to have the right cone at every singular vertex.
+The weight of direction against spacing is lowered, rung by rung, only as far as the chart needs to
+be free of folds and to have the right cone at every singular vertex.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ class _Work:
         mesh, field = self.field.mesh, self.field
         signs = self.cut.signs
         d1, d2 = (_flat(angle) * signs[:, None] for angle in (field.first, field.second))
-        found = []
+        found: list[Coordinate] = []
         for lines, across in ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0))):
             rise = 1.0 / (self.spacing * np.sin(field.angle))
             if by_factor:

@@ -17,13 +17,12 @@ _SMOOTH = 1e-3
 _HELD = 1e-9
 
 
-def integrating_factor(mesh: TriangleMesh, q: Floats, lines: Floats, flips: Indices) -> Floats:
+def integrating_factor(mesh: TriangleMesh, q: Floats, flips: Indices) -> Floats:
     """(f,) positive factors on the covectors *q* (f, 2), about one on average.
 
     Parameters
     ----------
-    q : in the faces' frames, 1/mm.
-    lines : (f, 2) their kernels; where an edge runs along them it says nothing.
+    q : in the faces' frames, 1/mm; an edge along the lines, their kernel, says nothing.
     flips : (3f,) sign between the covectors on both sides.
     """
     inner = np.flatnonzero(mesh.twin > np.arange(len(mesh.twin)))
@@ -50,5 +49,5 @@ def integrating_factor(mesh: TriangleMesh, q: Floats, lines: Floats, flips: Indi
     matrix = csr_matrix((data, (rows, columns)), shape=(n, n))
     pull = weight * jump
     right = np.bincount(f, pull, n) - np.bincount(g, pull, n)
-    sigma = solve_definite(matrix, right[:, None])[:, 0]
+    sigma = solve_definite(matrix, np.asarray(right, dtype=np.float64)[:, None])[:, 0]
     return np.asarray(np.exp(sigma - np.average(sigma, weights=mesh.areas)))

@@ -26,8 +26,7 @@ class Traced(NamedTuple):
     exits: Indices
     """(p,) boundary half-edge through which a line leaves the surface before, else -1."""
     lefts: Indices
-    """(p, 2) twice: chart position of the port's crossing carried to the triangle of the exit, and
-    the axis there in the last column; see ``exit_share``."""
+    """(p, 3) the position of the port's crossing and the axis, in the chart of the exit's triangle."""
 
 
 class _Rays(NamedTuple):
@@ -38,7 +37,9 @@ class _Rays(NamedTuple):
     rim: Mask
 
     def pick(self, which: Mask) -> _Rays:
-        return _Rays(*(x[which] for x in self))
+        return _Rays(
+            self.port[which], self.face[which], self.at[which], self.axis[which], self.rim[which]
+        )
 
 
 def trace(chart: ExactChart, ports: Ports) -> Traced:

@@ -8,15 +8,14 @@ import numpy as np
 
 from gridshell.errors import SettingError
 from gridshell.surface import (
-    AnalyticSurface,
     BrepSurface,
+    CurvatureEstimate,
     CurvedMesh,
     Remark,
     SmoothSurface,
     Surface,
     TriangulatedSurface,
     sound_mesh,
-    tessellate,
     working_mesh,
 )
 
@@ -24,9 +23,12 @@ FINE = 16.0
 """Triangles per quad of a tessellation made for the purpose."""
 
 _LEAST, _MOST = 8_000, 60_000
+_ROUGH = 5e-3
+"""Median residual over the edge, above which a cubic follows the surface poorly."""
+
 _EQUILATERAL = np.sqrt(3.0) / 4.0
 
-Source = TriangulatedSurface | BrepSurface | AnalyticSurface | CurvedMesh
+Source = TriangulatedSurface | BrepSurface | CurvedMesh
 """What can be remeshed."""
 
 
@@ -65,19 +67,38 @@ def working_surface(source: Source, *, quads: float) -> WorkingSurface:
         return WorkingSurface(source, SmoothSurface(source), False)
     if isinstance(source, TriangulatedSurface):
         mesh, remarks = sound_mesh(source.vertices, source.triangles)
-        made = working_mesh(mesh, quads=quads)
-        return WorkingSurface(
-            made.curved, SmoothSurface(made.curved), False, (*remarks, *made.remarks)
-        )
+        made = working_mesh(mesh, quads=max(1, round(quads)))
+        remarks = (*remarks, *_about(made))
+        return WorkingSurface(made.curved, SmoothSurface(made.curved), False, remarks)
     faces = float(np.clip(FINE * quads, _LEAST, _MOST))
+    return WorkingSurface(source.curved_mesh(_edge(source.area, faces)), source, True)
+
+
+def area_of(source: Source) -> float:
+    """Area, mm2; of B-rep faces to about a per cent."""
     if isinstance(source, BrepSurface):
-        return WorkingSurface(source.curved_mesh(_edge(source.area, faces)), source, True)
-    coarse = tessellate(source, edge=source.length_scale / 20.0)
-    edge = _edge(float(coarse.mesh.areas.sum()), faces)
-    return WorkingSurface(tessellate(source, edge=edge), source, True)
+        return source.area
+    if isinstance(source, CurvedMesh):
+        return float(source.mesh.areas.sum())
+    a, b, c = np.moveaxis(source.vertices[source.triangles], 1, 0)
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0)
+
+
+def _about(made: CurvatureEstimate) -> list[Remark]:
+    """What is to be known of an estimated curvature."""
+    found = []
+    if made.noisy:
+        message = (
+            f"the vertices scatter by {made.noise:.1%} of an edge; the curvature was smoothed over "
+            f"{made.rings} rings, the vertices put on the fitted surface"
+        )
+        found.append(Remark("noise", message, made.noise))
+    rough = float(np.median(made.residual))
+    if not made.noisy and rough > _ROUGH:
+        message = "the triangles are too coarse to tell the curvature well: use more of them"
+        found.append(Remark("coarse-triangles", message, rough))
+    return found
 
 
 def _edge(area: float, triangles: float) -> float:
     return float(np.sqrt(area / (triangles * _EQUILATERAL)))
-
-

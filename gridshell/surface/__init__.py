@@ -21,6 +21,7 @@ from gridshell.surface.surface_checks import Remark, aspects, sound_mesh
 from gridshell.surface.tessellation import ParameterDisk, tessellate
 from gridshell.surface.triangle_mesh import TriangleMesh
 from gridshell.surface.triangulated import TriangulatedSurface
+from gridshell.surface.working_mesh import working_mesh
 
 __all__ = [
     "AnalyticSurface",
@@ -55,4 +56,5 @@ __all__ = [
     "minimal_surface",
     "sound_mesh",
     "tessellate",
+    "working_mesh",
 ]

@@ -102,14 +102,14 @@ def estimated_curvature(mesh: TriangleMesh, *, quad_edge: float | None = None) -
             value=f"{quad_edge} mm",
             limit="> 0 mm",
         )
-    rings, noise = _rings_and_noise(mesh)
+    rings, noise = rings_and_noise(mesh)
     require_little_noise(noise)
     jets = _ring_jets(mesh, rings)
     residual = jets.residuals / _local_edges(mesh)
     if rings == RINGS:
         curved = CurvedMesh.of_vertices(mesh, jets.normals, jets.shapes)
         return CurvatureEstimate(curved, residual, noise, rings)
-    length = mesh.mean_edge if quad_edge is None else _SMOOTHING * quad_edge
+    length = smoothing_length(mesh, quad_edge)
     placed = TriangleMesh(jets.feet, mesh.triangles)
     shapes = smoothed_shapes(placed, jets.normals, jets.shapes, length=length)
     curved = CurvedMesh.of_vertices(placed, jets.normals, shapes)
@@ -127,7 +127,12 @@ def require_little_noise(noise: float) -> None:
         )
 
 
-def _rings_and_noise(mesh: TriangleMesh) -> tuple[int, float]:
+def smoothing_length(mesh: TriangleMesh, quad_edge: float | None) -> float:
+    """Length, mm, over which the operators of a noisy mesh are averaged."""
+    return mesh.mean_edge if quad_edge is None else _SMOOTHING * quad_edge
+
+
+def rings_and_noise(mesh: TriangleMesh) -> tuple[int, float]:
     """How many rings to use and the noise over the edge, judged by a sample of the vertices."""
     step = max(1, len(mesh.vertices) // _SAMPLE)
     rows = np.arange(0, len(mesh.vertices), step)

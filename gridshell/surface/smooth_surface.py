@@ -61,11 +61,11 @@ class SmoothSurface:
         faces, weights = self.flat.locate(points)
         below = flat_points(self.curved, faces, weights)
         for _ in range(_STEPS):
-            feet, normals, shapes = _blend(self.curved, faces, weights)
+            feet, normals, shapes = blend(self.curved, faces, weights)
             below = below + _correction(points - feet, normals, shapes)
             faces, weights = self._next_to(faces, below)
             below = flat_points(self.curved, faces, weights)
-        feet, normals, shapes = _blend(self.curved, faces, weights)
+        feet, normals, shapes = blend(self.curved, faces, weights)
         return Foot(feet, normals, _principal(normals, shapes))
 
     def _next_to(self, faces: Indices, points: Points) -> tuple[Indices, Floats]:
@@ -99,11 +99,11 @@ def lift(curved: CurvedMesh, faces: Indices, barycentric: Floats) -> Points:
     faces : (n,) triangles.
     barycentric : (n, 3) weights of their corners, each row with the sum 1.
     """
-    return _blend(curved, faces, barycentric)[0]
+    return blend(curved, faces, barycentric)[0]
 
 
-def _blend(curved: CurvedMesh, faces: Indices, weights: Floats) -> tuple[Points, Vectors, Floats]:
-    """Lifted points (n, 3), unit normals (n, 3) and shape operators (n, 3, 3) there."""
+def blend(curved: CurvedMesh, faces: Indices, weights: Floats) -> tuple[Points, Vectors, Floats]:
+    """Lifted points (n, 3), mm, unit normals (n, 3), shape operators (n, 3, 3), 1/mm, there."""
     corners = curved.mesh.triangles[faces]
     flat = flat_points(curved, faces, weights)
     offset = flat[:, None] - curved.mesh.vertices[corners]
