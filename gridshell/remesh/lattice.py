@@ -2,8 +2,8 @@
 
 Everything here is in exact integers: chart positions are multiples of ``1 / UNIT``. A crossing lies
 at a vertex of the triangles, on an edge, or inside a triangle. A *port* is one of the axis
-directions 0, 1, 2, 3 (+u, +v, -u, -v) in which a line leaves a crossing. A direction belongs to the sector
-(start, end] of one triangle: a line along an edge runs in the triangle on its right.
+directions 0, 1, 2, 3 (+u, +v, -u, -v) in which a line leaves a crossing. A direction belongs to the
+sector (start, end] of one triangle: a line along an edge runs in the triangle on its right.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Integer solutions of integer equations: a basis of all of them, by exact elimination.
 
 Unimodular column operations bring the equations to echelon form (H. Cohen, A Course in
-Computational Algebraic Number Theory, section 2.4.3); the columns that become zero span the solutions.
+Computational Algebraic Number Theory, section 2.4.3); the columns that become zero span the
+solutions.
 """
 
 from __future__ import annotations

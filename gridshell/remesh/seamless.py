@@ -166,9 +166,8 @@ class _Work:
         for lines, across in ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0))):
             rise = 1.0 / (self.spacing * np.sin(field.angle))
             if by_factor:
-                rise = rise * integrating_factor(
-                    mesh, across * rise[:, None], lines, self.cut.flips
-                )
+                covector = across * rise[:, None]
+                rise = rise * integrating_factor(mesh, covector, self.cut.flips)
             target = Target(lines, across, rise, weight, lams)
             unknowns = self.unknowns[len(found)]
             found.append(coordinate(mesh, unknowns, target, self.engine))

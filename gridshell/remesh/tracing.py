@@ -26,7 +26,7 @@ class Traced(NamedTuple):
     exits: Indices
     """(p,) boundary half-edge through which a line leaves the surface before, else -1."""
     lefts: Indices
-    """(p, 3) the position of the port's crossing and the axis, in the chart of the exit's triangle."""
+    """(p, 3) position of the port's crossing and axis, in the chart of the exit's triangle."""
 
 
 class _Rays(NamedTuple):
