@@ -125,9 +125,7 @@ def ports(chart: ExactChart) -> Ports:
     )
     rim: Mask = np.concatenate([row[6] for row in rows])
     order = np.lexsort((rank, owner))
-    owner, place, faces, starts, axes, rim = (
-        x[order] for x in (owner, place, faces, starts, axes, rim)
-    )
+    owner, place, faces, starts, axes = (x[order] for x in (owner, place, faces, starts, axes))
     key = 4 * place + axes
     by_key = np.argsort(key, kind="stable")
     some = np.unique(number, return_index=True)[1]
@@ -141,7 +139,7 @@ def ports(chart: ExactChart) -> Ports:
         faces=faces,
         starts=starts,
         axes=axes,
-        rim=rim,
+        rim=rim[order],
         keys=key[by_key],
         order=by_key,
         edge_keys=edge_keys,
