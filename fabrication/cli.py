@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from fabrication.optimize_cli import optimize
+from fabrication.remesh_cli import remesh
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,6 +32,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+app.command()(remesh)
 app.command()(optimize)
 
 _STAGES = 9

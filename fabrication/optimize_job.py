@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import gridshell as gs
-from fabrication.errors import OutputError
+from fabrication.whole_files import Write, text_file, write_whole
 
 _QUADS_AT_FULL_ACCURACY = 10_000
 """Above it the default tolerance grows with the square of the number of quads: the softest motions
@@ -35,7 +33,7 @@ class OptimizeJob:
     planarity : what shall be flat.
     angle : None leaves it free; two angles make a field from the centre to the outermost quad.
     rhombus, square : equal diagonals; at right angles.
-    reference : surface file in the same unit.
+    reference : surface file in the same unit, or in the one it states itself.
     project : an almost exact net moves as little as it can. False finds a new form.
     anchor : what holds the shape.
     steps, tolerance : when to stop; None adapts the tolerance to the size of the mesh.
@@ -84,7 +82,7 @@ def optimize_job(job: OptimizeJob, progress: gs.Progress | None = None) -> Optim
     control = _read(job)
     read = time.perf_counter()
     recipe = _recipe(job, control)
-    surface = None if job.reference is None else gs.read_surface(job.reference, unit=job.unit)
+    surface = None if job.reference is None else _reference(job.reference, job.unit)
     state = None if job.resume is None else gs.read_state(job.resume)
 
     def attempt(made: gs.Recipe) -> gs.OptimizedNet:
@@ -126,10 +124,10 @@ def write_result(result: OptimizeResult, job: OptimizeJob, out: Path, report: Pa
         When a file cannot be written.
     """
     mesh = result.net.control.mesh
-    _whole(out, lambda path: gs.write_obj(path, mesh, unit=job.unit))
+    files: dict[Path, Write] = {out: lambda path: gs.write_obj(path, mesh, unit=job.unit)}
     if report is not None:
-        text = json.dumps(result.report, indent=2, allow_nan=False) + "\n"
-        _whole(report, lambda path: _write_text(path, text))
+        files[report] = text_file(json.dumps(result.report, indent=2, allow_nan=False) + "\n")
+    write_whole(files)
 
 
 def _read(job: OptimizeJob) -> gs.ControlMesh:
@@ -138,6 +136,10 @@ def _read(job: OptimizeJob) -> gs.ControlMesh:
     if own and not job.angle and not job.rhombus and not job.square:
         return gs.without_families(mesh)
     return gs.as_control_mesh(mesh)
+
+
+def _reference(path: Path, unit: gs.Unit) -> gs.Surface:
+    return gs.read_design(path, unit=None if gs.states_unit(path) else unit)
 
 
 def _recipe(job: OptimizeJob, control: gs.ControlMesh) -> gs.Recipe:
@@ -200,23 +202,3 @@ def _hopeless(net: gs.OptimizedNet) -> bool:
 def _second_way(recipe: gs.NetRecipe) -> gs.NetRecipe:
     fairness, closeness = gs.Weight(0.1, 0.3), gs.Weight(1e-2, 0.1)
     return replace(recipe, keep_shape=True, fairness=fairness, closeness=closeness)
-
-
-def _whole(path: Path, write: Callable[[Path], None]) -> None:
-    """Have a file written beside *path* and move it there."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        write(draft)
-        draft.replace(path)
-    except (gs.FileError, OSError) as error:
-        draft.unlink(missing_ok=True)
-        raise OutputError(
-            "The file cannot be written",
-            where=str(path),
-            value=getattr(error, "value", None) or getattr(error, "strerror", None),
-            advice="a folder that exists and may be written",
-        ) from None
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")

@@ -28,8 +28,10 @@ from fabrication.kernel_job import Kernel, kernel
 from fabrication.nesting import NestedSheet, nest
 from fabrication.net_checks import check_net
 from fabrication.parts import FlatPart, flat_parts
-from fabrication.sections import MeshSection, Project
-from fabrication.settings import patch_of, profile_of, surface_of
+from fabrication.remesh_job import Remeshed
+from fabrication.sections import Project
+from fabrication.settings import profile_of
+from fabrication.starts import Start, start
 from fabrication.structures import Structure, structure
 
 CLOSURE_LIMIT = 0.05
@@ -81,6 +83,7 @@ class _Design:
     structure: Structure
     parts: tuple[FlatPart, ...]
     sheets: tuple[NestedSheet, ...]
+    remeshed: Remeshed | None
 
 
 def run(
@@ -124,13 +127,12 @@ def run(
 
 
 def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Report, list[Finding]]:
-    with clock.stage("start mesh"):
-        control, surface = start(project, folder)
+    begun = start(project, folder, clock.stage)
     with clock.stage("optimise"):
-        result = _optimise(project, control, surface).require()
+        result = _optimise(project, begun).require()
         kind = gs.Planarity.DIAGONAL_STARS
         quality = gs.net_quality(
-            result.control, planarity=kind, angle=_angle(project), reference=surface
+            result.control, planarity=kind, angle=_angle(project), reference=begun.surface
         )
     with clock.stage("structure"):
         skin = gs.diagonal_meshes(result.control)[0 if project.net.skin == "D1" else 1]
@@ -141,41 +143,18 @@ def _design(project: Project, folder: Path, clock: _Clock) -> tuple[_Design, Rep
         sheet = stock.Sheet(**project.sheet.model_dump())
         sheets = nest(parts, sheet)
         about_net = check_net(result, quality, kept=project.net.keep_to_surface)
-        findings = [*about_net, *joint.findings(built), *check(built, parts)]
-    design = _Design(result.control, skin, built, parts, sheets)
+        laid = () if begun.remeshed is None else begun.remeshed.findings
+        findings = [*laid, *about_net, *joint.findings(built), *check(built, parts)]
+    design = _Design(result.control, skin, built, parts, sheets, begun.remeshed)
     seconds = clock.seconds["optimise"]
     return design, gs.net_report(result, kind, seconds=seconds, quality=quality), findings
 
 
-def start(project: Project, folder: Path) -> tuple[gs.ControlMesh, gs.Surface]:
-    """The control mesh a project begins with and its surface: of a mesh file, the mesh itself.
-
-    Raises
-    ------
-    InputError
-        When the surface or the mesh does not carry the net that is asked for.
-    """
-    source = project.source
-    if isinstance(source, MeshSection):
-        return _mesh_start(source, folder)
-    surface = surface_of(source.surface)
-    return gs.control_patch(surface, patch_of(source.patch)), surface
-
-
-def _mesh_start(section: MeshSection, folder: Path) -> tuple[gs.ControlMesh, gs.Surface]:
-    mesh = gs.read_obj(folder / section.file, unit=gs.Unit.named(section.unit))
-    along_edges = section.lamellas_along == "edges"
-    control = gs.control_mesh(mesh) if along_edges else gs.as_control_mesh(mesh)
-    gs.require_sound(mesh)
-    gs.require_hyperbolic(control.mesh)
-    return control, gs.TriangulatedSurface.of_quads(mesh.vertices, mesh.quads)
-
-
-def _optimise(project: Project, control: gs.ControlMesh, surface: gs.Surface) -> gs.OptimizedNet:
+def _optimise(project: Project, begun: Start) -> gs.OptimizedNet:
     net = project.net
     recipe = gs.a_net(angle=_angle(project), steps=net.steps, tolerance=net.tolerance)
-    reference = surface if net.keep_to_surface else None
-    return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
+    reference = begun.surface if net.keep_to_surface else None
+    return gs.optimize(begun.control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
 
 
 def _angle(project: Project) -> float | None:
@@ -221,6 +200,7 @@ def _write(
     findings += _loop_findings(closed, fitted)
     report: Report = {
         "name": project.name,
+        **({} if design.remeshed is None else {"remesh": design.remeshed.section()}),
         "net": net_report,
         "structure": {
             "lamellas": len(design.structure.lamellas),
@@ -274,6 +254,11 @@ def _write_reports(
     from fabrication.export.report import write_report
 
     with clock.stage("report"):
+        pictures: Sequence[Report] = ()
+        if design.remeshed is not None:
+            from fabrication.export.stages import pictures as drawn
+
+            pictures = drawn(design.remeshed.made, design.control)
         write_report(
             draft / "report.html",
             name=project.name,
@@ -282,6 +267,7 @@ def _write_reports(
             parts=design.parts,
             sheets=design.sheets,
             clearance=project.joint.clearance,
+            pictures=pictures,
         )
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")

@@ -1,7 +1,8 @@
 """The project file: read, checked and written; every error names its key.
 
-A project says *where* the net comes from (``[surface]`` with ``[patch]``, or ``[mesh]``), *what*
-it must be (``[net]``) and *how* it is built (``[profile]``, ``[joint]``, ``[sheet]``).
+A project says *where* the net comes from (``[surface]`` with ``[patch]`` or, from a file, with
+``[remesh]``; or ``[mesh]``), *what* it must be (``[net]``) and *how* it is built (``[profile]``,
+``[joint]``, ``[sheet]``).
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ from pydantic import ValidationError
 
 from fabrication.errors import ProjectError
 from fabrication.sections import (
+    GuideSection,
     MaterialSection,
     MeshSection,
     NetSection,
     PatchSection,
     ProfileSection,
     Project,
+    RemeshSection,
     Section,
     SheetSection,
     SlotSection,
@@ -88,7 +91,7 @@ def _settings(section: Section) -> Iterator[str]:
 def _toml(value: Any) -> str:
     if isinstance(value, Section):
         return "{ " + ", ".join(_settings(value)) + " }"
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return "[" + ", ".join(map(_toml, value)) + "]"
     if isinstance(value, str | bool):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
@@ -115,6 +118,7 @@ _LIMITS: dict[str, Callable[[dict[str, Any]], str]] = {
     "less_than_equal": lambda c: f"<= {c['le']:g}",
     "string_too_short": lambda c: f"{c['min_length']} or more characters",
     "string_too_long": lambda c: f"{c['max_length']} characters at most",
+    "list_type": lambda _: "a list of tables",
     "tuple_type": lambda _: "a list of 2 numbers",
     "too_long": lambda c: f"a list of {c['max_length']} numbers",
     "literal_error": lambda c: c["expected"].replace(" or ", ", ").replace("'", ""),
@@ -168,6 +172,8 @@ def _unknown_choice(where: str, more: str, context: dict[str, str]) -> ProjectEr
 def _sections() -> dict[str, type[Section]]:
     """Every section by what stands for it in an error's place: its key, or its kind or layout."""
     named: dict[str, type[Section]] = {
+        "remesh": RemeshSection,
+        "guides": GuideSection,
         "mesh": MeshSection,
         "net": NetSection,
         "profile": ProfileSection,

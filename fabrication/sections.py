@@ -6,7 +6,7 @@ Lengths are mm and angles degrees here and nowhere below.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     BaseModel,
@@ -19,7 +19,10 @@ from pydantic import (
 )
 
 MOST_NODES = 100_000
-"""Nodes of the largest net that is tried."""
+"""Nodes of the largest net that is tried, and quads of the largest mesh."""
+
+USUAL_QUADS = 500
+"""Of a mesh laid over a surface."""
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0, le=1e9)]
@@ -30,6 +33,7 @@ Parameter = Annotated[Number, Field(ge=-1e3, le=1e3)]
 Whole = Annotated[int, Field(strict=True)]
 Count = Annotated[Whole, Field(ge=2, le=MOST_NODES)]
 Range = tuple[Parameter, Parameter]
+UnitName = Literal["mm", "cm", "m", "inch", "foot"]
 
 
 class Section(BaseModel):
@@ -96,6 +100,14 @@ class SphereSurface(Section):
     radius: Size
 
 
+class FileSurface(Section):
+    """A surface from a file: triangles, B-rep faces, or boundary curves of a minimal surface."""
+
+    kind: Literal["imported"] = "imported"
+    file: str
+    unit: Annotated[UnitName | None, Field(description="the one a STEP or IGES file states")] = None
+
+
 SurfaceSection = Annotated[
     EnneperSurface
     | CatenoidSurface
@@ -104,9 +116,20 @@ SurfaceSection = Annotated[
     | HyperboloidSurface
     | ScherkSurface
     | TorusSurface
-    | SphereSurface,
+    | SphereSurface
+    | FileSurface,
     Field(discriminator="kind"),
 ]
+AnalyticSurface = (
+    EnneperSurface
+    | CatenoidSurface
+    | HelicoidSurface
+    | HyparSurface
+    | HyperboloidSurface
+    | ScherkSurface
+    | TorusSurface
+    | SphereSurface
+)
 
 
 class AsymptoticPatchSection(Section):
@@ -139,8 +162,41 @@ class MeshSection(Section):
     """A quad mesh from a file: its edges or its diagonals become the lamellas."""
 
     file: str
-    unit: Literal["mm", "cm", "m", "inch", "foot"]
+    unit: UnitName
     lamellas_along: Literal["edges", "diagonals"]
+
+
+class GuideSection(Section):
+    """Lines of a file that the lines of one family shall follow."""
+
+    file: str
+    family: Annotated[Whole, Field(ge=1, le=2)] = 1
+
+
+class RemeshSection(Section):
+    """The quad mesh that is laid over a surface from a file; its edges become the lamellas."""
+
+    directions: Literal["asymptotic", "principal", "conjugate"]
+    angle: Annotated[
+        Annotated[Number, Field(gt=0.0, lt=180.0)] | None,
+        Field(description="of conjugate directions only"),
+    ] = None
+    hand: Annotated[
+        Literal["left", "right"] | None, Field(description="of conjugate directions only")
+    ] = None
+    infeasible: Annotated[
+        Literal["widen", "clamp", "refuse"] | None,
+        Field(description="of conjugate directions only"),
+    ] = None
+    quads: Annotated[
+        Annotated[Whole, Field(ge=1, le=MOST_NODES)] | None,
+        Field(description=f"{USUAL_QUADS}, unless edge says otherwise"),
+    ] = None
+    edge: Annotated[Size | None, Field(description="as long as the number of quads makes it")] = (
+        None
+    )
+    extent: Literal["inside", "cover", "trimmed"] = "inside"
+    guides: list[GuideSection] = Field(default_factory=list)
 
 
 class NetSection(Section):
@@ -201,8 +257,16 @@ class SheetSection(Section):
 class SurfaceSource:
     """A patch of an analytic surface."""
 
-    surface: SurfaceSection
+    surface: AnalyticSurface
     patch: PatchSection
+
+
+@dataclass(frozen=True)
+class RemeshSource:
+    """A surface from a file and the quad mesh that is laid over it."""
+
+    surface: FileSurface
+    remesh: RemeshSection
 
 
 class Project(Section):
@@ -211,6 +275,7 @@ class Project(Section):
     name: Annotated[str, Field(min_length=1, max_length=80)]
     surface: SurfaceSection | None = None
     patch: PatchSection | None = None
+    remesh: RemeshSection | None = None
     mesh: MeshSection | None = None
     net: NetSection
     profile: ProfileSection
@@ -218,13 +283,33 @@ class Project(Section):
     sheet: SheetSection
 
     @property
-    def source(self) -> MeshSection | SurfaceSource:
+    def source(self) -> MeshSection | SurfaceSource | RemeshSource:
         """Where the net comes from; the validator below makes sure there is exactly one place."""
-        if self.mesh is not None and self.surface is None and self.patch is None:
-            return self.mesh
-        if self.mesh is None and self.surface is not None and self.patch is not None:
-            return SurfaceSource(self.surface, self.patch)
-        raise ValueError("give either [surface] with [patch], or [mesh]")
+        surface, patch, remesh, mesh = self.surface, self.patch, self.remesh, self.mesh
+        if mesh is not None:
+            if (surface, patch, remesh) == (None, None, None):
+                return mesh
+        elif isinstance(surface, FileSurface):
+            if patch is not None:
+                raise ValueError("a [surface] from a file goes with [remesh], not with [patch]")
+            if remesh is None:
+                raise ValueError(
+                    "a [surface] from a file needs [remesh]; a quad mesh is named by [mesh]"
+                )
+            return RemeshSource(surface, remesh)
+        elif remesh is not None:
+            raise ValueError("[remesh] needs a [surface] with a file")
+        elif surface is not None and patch is not None:
+            return SurfaceSource(surface, patch)
+        raise ValueError("give either [surface] with [patch] or [remesh], or [mesh]")
+
+    @field_validator("surface", mode="before")
+    @classmethod
+    def _from_file(cls, value: Any) -> Any:
+        """A surface that names a file needs no kind."""
+        if isinstance(value, dict) and "file" in value and "kind" not in value:
+            return {"kind": "imported", **value}
+        return value
 
     @field_validator("name")
     @classmethod

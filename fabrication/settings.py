@@ -14,14 +14,16 @@ import numpy as np
 import fabrication.stock as stock
 import gridshell as gs
 from fabrication.errors import ProjectError
+from fabrication.remesh_settings import require_file, require_remeshable
 from fabrication.sections import (
     MOST_NODES,
+    AnalyticSurface,
     AsymptoticPatchSection,
     MeshSection,
     PatchSection,
     ProfileSection,
     Project,
-    SurfaceSection,
+    RemeshSource,
     SurfaceSource,
 )
 from gridshell.arrays import Floats
@@ -41,7 +43,7 @@ _SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
 }
 
 
-def surface_of(section: SurfaceSection) -> gs.AnalyticSurface:
+def surface_of(section: AnalyticSurface) -> gs.AnalyticSurface:
     """The surface of ``[surface]``."""
     sizes = section.model_dump()
     return _SURFACES[sizes.pop("kind")](**sizes)
@@ -92,20 +94,11 @@ def require_makeable(project: Project, path: Path) -> None:
         )
     source = project.source
     if isinstance(source, MeshSection):
-        _require_file(source, path)
+        require_file(source.file, "mesh", path, "mesh.file")
+    elif isinstance(source, RemeshSource):
+        require_remeshable(source, path)
     else:
         _require_patch(source, path)
-
-
-def _require_file(section: MeshSection, path: Path) -> None:
-    mesh = path.parent / section.file
-    if not mesh.is_file():
-        raise ProjectError(
-            "The mesh file is not there",
-            where=f"{path}, mesh.file",
-            value=str(mesh),
-            advice="a path from the folder of the project file",
-        )
 
 
 def _require_patch(source: SurfaceSource, path: Path) -> None:

@@ -86,14 +86,17 @@ from .io import (
 )
 from .io import read_brep as read_brep
 from .io import read_curves as read_curves
+from .io import read_design as read_design
 from .io import (
     read_net as read_net,
 )
 from .io import (
     read_obj as read_obj,
 )
+from .io import read_polylines as read_polylines
 from .io import read_state as read_state
 from .io import read_surface as read_surface
+from .io import states_unit as states_unit
 from .io import (
     write_net as write_net,
 )

@@ -43,6 +43,7 @@ def write_report(
     parts: Sequence[FlatPart],
     sheets: Sequence[NestedSheet] = (),
     clearance: float | None = None,
+    pictures: Sequence[Mapping[str, Any]] = (),
 ) -> None:
     """Write the page.
 
@@ -54,6 +55,7 @@ def write_report(
     structure, parts : one part per lamella, in the structure's order.
     sheets : where the parts lie; without them the cut list names no sheet.
     clearance : of the slots, mm; None leaves it out.
+    pictures : of the way from the surface to the net, see ``stages``.
 
     Raises
     ------
@@ -71,6 +73,7 @@ def write_report(
         sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
         clearance=clearance,
+        pictures=[{**picture, "svg": Markup(picture["svg"])} for picture in pictures],
         structure=structure,
         parts=parts,
         families=[sum(lamella.family == f for lamella in structure.lamellas) for f in (1, 2)],

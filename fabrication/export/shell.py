@@ -28,6 +28,8 @@ _LIGHT = {"ambient": 0.8, "diffuse": 0.35, "specular": 0.05, "roughness": 0.8, "
 _VIEW, _FIELD, _ASPECT = (0.62, -0.64, 0.46), np.pi / 4.0, 1.5
 """Towards the camera; plotly's own vertical field of view; the frame's width over its height."""
 
+_TOP = np.array([0.0, 0.0, 1.0])
+
 
 @dataclass(frozen=True, eq=False)
 class _StripMesh:
@@ -99,7 +101,7 @@ def shell_figure(structure: Structure, parts: Sequence[FlatPart]) -> Any:
     points = np.concatenate([np.stack([t.x, t.y, t.z], axis=1) for t in traces]).astype(np.float64)
     points = points[np.isfinite(points[:, 0])]
     traces += [_nodes(structure, centre), _axes(points)]
-    return go.Figure(traces, {"template": "none", "scene": {"camera": _camera(points)}})
+    return go.Figure(traces, {"template": "none", "scene": {"camera": camera(points)}})
 
 
 def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[Any]:
@@ -107,14 +109,14 @@ def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[A
 
     What a strip says is kept once, with its number of points; the page says it at every point.
     """
-    points = _on_screen(np.concatenate([mesh.points for mesh in meshes]), centre)
+    points = on_screen(np.concatenate([mesh.points for mesh in meshes]), centre)
     first = np.cumsum([0] + [len(mesh.points) for mesh in meshes[:-1]])
     triangles = np.concatenate([m.triangles + at for m, at in zip(meshes, first, strict=True)])
     gap = np.full((1, 3), np.nan, dtype=np.float32)
     loops = [points[m.loop + at] for m, at in zip(meshes, first, strict=True)]
     name, group = f"Family {'AB'[family - 1]}", f"family{family}"
     faces = go.Mesh3d(
-        **_xyz(points),
+        **xyz(points),
         **dict(zip("ijk", triangles.T.astype(np.min_scalar_type(len(points))), strict=True)),
         name=name,
         legendgroup=group,
@@ -125,7 +127,7 @@ def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[A
         meta={"texts": [m.hover for m in meshes], "counts": [len(m.points) for m in meshes]},
     )
     edges = go.Scatter3d(
-        **_xyz(np.concatenate([block for loop in loops for block in (loop, gap)])),
+        **xyz(np.concatenate([block for loop in loops for block in (loop, gap)])),
         mode="lines",
         name=f"{name}, edges",
         legendgroup=group,
@@ -144,7 +146,7 @@ def _marks(structure: Structure, centre: Floats) -> Any:
         lamella.place(lamella.start - np.array([beyond]), nought, nought) for lamella in lamellas
     ]
     return go.Scatter3d(
-        **_xyz(_on_screen(np.concatenate(places), centre)),
+        **xyz(on_screen(np.concatenate(places), centre)),
         mode="text",
         name="Marks",
         text=[lamella.mark for lamella in lamellas],
@@ -165,7 +167,7 @@ def _nodes(structure: Structure, centre: Floats) -> Any:
         angle = "" if node.angle is None else f"{np.degrees(node.angle):.2f}°<br>"
         texts.append(f"<b>{node.name}</b><br>{angle}{marks}")
     return go.Scatter3d(
-        **_xyz(_on_screen(np.array([node.position for node in structure.nodes]), centre)),
+        **xyz(on_screen(np.array([node.position for node in structure.nodes]), centre)),
         mode="markers",
         name="Nodes",
         text=texts,
@@ -180,7 +182,7 @@ def _axes(points: Points) -> Any:
     right, rear, _ = points.max(axis=0) - length
     corner = np.array([right, rear, points[:, 2].min()])
     return go.Scatter3d(
-        **_xyz(corner + length * np.eye(4, 3, k=-1)[[1, 0, 2, 0, 3]]),
+        **xyz(corner + length * np.eye(4, 3, k=-1)[[1, 0, 2, 0, 3]]),
         mode="lines+text",
         name=f"Axes, {length:g} m long",
         text=["x", "", "y", "", "z"],
@@ -190,23 +192,30 @@ def _axes(points: Points) -> Any:
     )
 
 
-def _on_screen(points: Points, centre: Floats) -> Any:
+def on_screen(points: Points, centre: Floats) -> Any:
     """*points* (n, 3) mm as metres from *centre*: single precision, rounded to 0.1 mm."""
     return np.round((points - centre) / 1e3, 4).astype(np.float32)
 
 
-def _xyz(points: Any) -> dict[str, Any]:
+def xyz(points: Any) -> dict[str, Any]:
+    """*points* (n, 3), or one (3,), as plotly's x, y and z."""
     return dict(zip("xyz", points.T, strict=True))
 
 
-def _camera(points: Points) -> dict[str, Any]:
+def camera(
+    points: Points, eye: tuple[float, float, float] = _VIEW, top: Floats = _TOP
+) -> dict[str, Any]:
     """Where the camera stands to see all *points* (n, 3) as large as the frame allows.
 
     plotly's unit is the cube root of the bounding box's volume, its origin the box's middle.
+
+    Parameters
+    ----------
+    eye, top : directions (3,) to the camera and of what shall be upright in the picture.
     """
     low, high = points.min(axis=0), points.max(axis=0)
-    back = np.array(_VIEW) / np.linalg.norm(_VIEW)
-    right = np.array([-back[1], back[0], 0.0]) / np.hypot(back[0], back[1])
+    back = np.array(eye) / np.linalg.norm(eye)
+    right = np.cross(top, back) / np.linalg.norm(np.cross(top, back))
     frame = np.stack([right, np.cross(back, right), back], axis=1)
     x = (points - (low + high) / 2.0) @ frame / np.cbrt(np.prod(np.maximum(high - low, 1e-3)))
     reach = np.tan(_FIELD / 2.0) * np.array([_ASPECT, 1.0])
@@ -215,5 +224,5 @@ def _camera(points: Points) -> dict[str, Any]:
         distance = ((np.abs(x[:, :2] - centre) / reach).max(axis=1) + x[:, 2]).max()
         seen = (x[:, :2] - centre) / (distance - x[:, 2:])
         centre += (seen.min(axis=0) + seen.max(axis=0)) / 2.0 * distance
-    eye = np.r_[centre, 1.05 * distance]
-    return {"eye": _xyz(frame @ eye), "center": _xyz(frame[:, :2] @ centre)}
+    place = np.r_[centre, 1.05 * distance]
+    return {"eye": xyz(frame @ place), "center": xyz(frame[:, :2] @ centre)}

@@ -33,9 +33,13 @@ def read_brep(
     SurfaceError
         A patch with one side only, or a broken outline.
     """
+    return patch_of(*load_with_scale(Path(path), unit), tolerance=tolerance)
+
+
+def patch_of(shape: Any, scale: float, *, tolerance: float | None = None) -> BrepSurface:
+    """The faces of a loaded kernel shape whose unit is *scale* mm; raises as `read_brep` does."""
     from gridshell.surface.brep_kernel import model_of
 
-    shape, scale = load_with_scale(Path(path), unit)
     sewn = None if tolerance is None else tolerance / scale
     return BrepSurface(model_of(shape, tolerance=sewn).scaled(scale))
 

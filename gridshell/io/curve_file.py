@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,9 @@ from gridshell.errors import FileError, NotOnePatchError, SettingError, UnitErro
 from gridshell.io.brep_file import load_with_scale
 from gridshell.io.obj import Unit
 
-_KERNEL = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+KERNEL = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+"""Endings of the files that the CAD kernel reads."""
+
 _SAME = 1e-6
 """Points closer than this times the size of all curves are one."""
 
@@ -46,27 +49,56 @@ def read_curves(
         When *tolerance* is not positive.
     """
     path = Path(path)
+    pieces = _pieces(path, unit, tolerance)
+    if path.suffix.lower() in (".obj", *KERNEL):
+        pieces = _joined(path, pieces)
+    return [_closed(path, number, piece) for number, piece in enumerate(pieces)]
+
+
+def loops_of(path: Path, shape: Any, scale: float, *, tolerance: float = 0.1) -> list[Points]:
+    """The closed curves of a loaded kernel shape whose unit is *scale* mm, as `read_curves`."""
+    pieces = _joined(path, _require_some(path, _of_shape(path, shape, scale, tolerance)))
+    return [_closed(path, number, piece) for number, piece in enumerate(pieces)]
+
+
+def read_polylines(
+    path: Path | str, *, unit: Unit | None = None, tolerance: float = 0.1
+) -> list[Points]:
+    """Read polylines, open or closed, as they are drawn: (k, 3) each, mm.
+
+    The same files as for `read_curves`; a closed one repeats its first point at the end.
+
+    Raises
+    ------
+    FileError, UnitError, NotOnePatchError, SettingError
+        As `read_curves` does, except for curves that are not closed.
+    """
+    return [frozen(piece) for piece in _pieces(Path(path), unit, tolerance)]
+
+
+def _pieces(path: Path, unit: Unit | None, tolerance: float) -> list[Floats]:
+    """What the file draws, mm."""
     suffix = path.suffix.lower()
-    if suffix in _KERNEL:
-        pieces = _of_brep(path, unit, tolerance)
-    else:
-        if unit is None:
-            raise UnitError(
-                "A file of points states no unit",
-                where=str(path),
-                limit=", ".join(u.name.lower() for u in Unit),
-                advice="give the unit the file was drawn in",
-            )
-        text = _text(path)
-        found = _of_obj(path, text) if suffix == ".obj" else _of_text(path, text)
-        pieces = [piece * unit.value for piece in found]
+    if suffix in KERNEL:
+        return _require_some(path, _of_shape(path, *load_with_scale(path, unit), tolerance))
+    if unit is None:
+        raise UnitError(
+            "A file of points states no unit",
+            where=str(path),
+            limit=", ".join(u.name.lower() for u in Unit),
+            advice="give the unit the file was drawn in",
+        )
+    text = _text(path)
+    found = _of_obj(path, text) if suffix == ".obj" else _of_text(path, text)
+    return _require_some(path, [piece * unit.value for piece in found])
+
+
+def _require_some(path: Path, pieces: list[Floats]) -> list[Floats]:
     if not pieces:
         raise FileError(
             "The file holds no curves", where=str(path), advice="export closed polylines"
         )
-    if suffix == ".obj" or suffix in _KERNEL:
-        pieces = _joined(path, pieces)
-    return [_closed(path, number, piece) for number, piece in enumerate(pieces)]
+    return pieces
 
 
 def _text(path: Path) -> str:
@@ -122,7 +154,7 @@ def _of_obj(path: Path, text: str) -> list[Floats]:
     return [np.array(vertices)[indices] for _, indices in lines if len(indices) > 1]
 
 
-def _of_brep(path: Path, unit: Unit | None, tolerance: float) -> list[Floats]:
+def _of_shape(path: Path, shape: Any, scale: float, tolerance: float) -> list[Floats]:
     from gridshell.surface.brep_kernel import curves_of, has_faces
 
     if not tolerance > 0.0:
@@ -132,7 +164,6 @@ def _of_brep(path: Path, unit: Unit | None, tolerance: float) -> list[Floats]:
             value=f"{tolerance} mm",
             limit="> 0 mm",
         )
-    shape, scale = load_with_scale(path, unit)
     if has_faces(shape):
         raise NotOnePatchError(
             "The file holds faces, not only curves",

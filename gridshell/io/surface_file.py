@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gridshell.arrays import Indices, Points
 from gridshell.errors import FileError
 from gridshell.io.obj import Unit
 from gridshell.surface import TriangulatedSurface
@@ -37,6 +38,17 @@ def read_surface(path: Path | str, *, unit: Unit) -> TriangulatedSurface:
     SurfaceError
         When its triangles do not make a surface.
     """
+    return TriangulatedSurface(*read_triangles(path, unit=unit))
+
+
+def read_triangles(path: Path | str, *, unit: Unit) -> tuple[Points, Indices]:
+    """Vertices (n, 3) in mm and triangles (f, 3) of a mesh file, as they are.
+
+    Raises
+    ------
+    FileError
+        When the file is missing or cannot be read.
+    """
     import trimesh
 
     if not Path(path).is_file():
@@ -55,4 +67,4 @@ def read_surface(path: Path | str, *, unit: Unit) -> TriangulatedSurface:
     if len(faces) == 0:
         raise FileError("The surface file cannot be read", where=str(path), value="no faces")
     used, compact = np.unique(faces, return_inverse=True)
-    return TriangulatedSurface(vertices[used] * unit.value, compact.reshape(-1, 3))
+    return vertices[used] * unit.value, compact.reshape(-1, 3).astype(np.int64)

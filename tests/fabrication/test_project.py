@@ -400,7 +400,7 @@ def test_a_missing_number_of_one_s_own_material_is_named(refused):
 )
 def test_a_project_needs_exactly_one_source(refused, changes):
     error = refused(changes)
-    assert error.what == "Give either [surface] with [patch], or [mesh]"
+    assert error.what == "Give either [surface] with [patch] or [remesh], or [mesh]"
 
 
 @pytest.mark.parametrize(

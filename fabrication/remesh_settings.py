@@ -1,0 +1,103 @@
+"""Whether ``[surface]`` with a file and ``[remesh]`` go together, told without reading the file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fabrication.errors import ProjectError
+from fabrication.sections import RemeshSection, RemeshSource
+
+FORMATS = (
+    *(".obj", ".ply", ".stl", ".glb", ".csv", ".txt", ".xyz"),
+    *(".step", ".stp", ".iges", ".igs", ".brep", ".brp"),
+)
+"""Endings of the surface files that can be read."""
+
+_STATE_UNIT = (".step", ".stp", ".iges", ".igs")
+
+
+def require_remeshable(source: RemeshSource, path: Path) -> None:
+    """Refuse what can be told to fail before the surface is read.
+
+    Parameters
+    ----------
+    path : the project file; the others are looked for beside it.
+
+    Raises
+    ------
+    ProjectError
+        Naming the file and the key.
+    """
+    surface, suffix = source.surface, Path(source.surface.file).suffix.lower()
+    require_file(surface.file, "surface", path, "surface.file")
+    if suffix not in FORMATS:
+        raise ProjectError(
+            "The surface file has an ending that is not known",
+            where=f"{path}, surface.file",
+            value=repr(suffix),
+            limit=", ".join(FORMATS),
+        )
+    if surface.unit is None and suffix not in _STATE_UNIT:
+        raise ProjectError(
+            "A key is missing",
+            where=f"{path}, surface.unit",
+            advice="add surface.unit: only STEP and IGES files state their own",
+        )
+    _require_consistent(source.remesh, path)
+    for number, guide in enumerate(source.remesh.guides):
+        require_file(guide.file, "guide", path, f"remesh.guides.{number}.file")
+    if source.remesh.directions != "asymptotic":
+        raise ProjectError(
+            "Lamellas stand along asymptotic directions only",
+            where=f"{path}, remesh.directions",
+            value=repr(source.remesh.directions),
+            limit="asymptotic",
+            advice="gridshell remesh for this mesh, then gridshell optimize --net planar for a "
+            "net of flat panels",
+        )
+
+
+def require_file(name: str, kind: str, path: Path, key: str) -> None:
+    """Refuse a file that is not beside the project file *path*; raises ProjectError."""
+    file = path.parent / name
+    if not file.is_file():
+        raise ProjectError(
+            f"The {kind} file is not there",
+            where=f"{path}, {key}",
+            value=str(file),
+            advice="a path from the folder of the project file",
+        )
+
+
+def _require_consistent(section: RemeshSection, path: Path) -> None:
+    """Refuse settings that these directions do not have, and a size that is given twice."""
+    if section.directions == "conjugate":
+        if section.angle is None:
+            raise ProjectError(
+                "A key is missing",
+                where=f"{path}, remesh.angle",
+                advice="add remesh.angle, degrees; 90 gives the principal directions",
+            )
+    else:
+        for key in ("angle", "hand", "infeasible"):
+            if getattr(section, key) is not None:
+                raise ProjectError(
+                    "Only conjugate directions have this setting",
+                    where=f"{path}, remesh.{key}",
+                    value=f"{getattr(section, key)!r} with {section.directions!r}",
+                    advice="leave it out",
+                )
+    if section.directions == "asymptotic" and section.guides:
+        raise ProjectError(
+            "Guide lines lead principal and conjugate directions only",
+            where=f"{path}, remesh.guides",
+            value=f"{len(section.guides)} with 'asymptotic'",
+            advice="leave them out: the surface gives asymptotic directions everywhere",
+        )
+    if section.quads is not None and section.edge is not None:
+        raise ProjectError(
+            "The size of the quads must be given once",
+            where=f"{path}, remesh.edge",
+            value="quads and edge",
+            advice="leave one of them out",
+        )

@@ -1,0 +1,98 @@
+"""The control mesh a project begins with, and the surface it belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+import gridshell as gs
+from fabrication.remesh_job import Remeshed, Wish, lay, read_wished
+from fabrication.sections import USUAL_QUADS, MeshSection, Project, RemeshSection, RemeshSource
+from fabrication.settings import patch_of, surface_of
+
+Stage = Callable[[str], AbstractContextManager[None]]
+"""Announces a stage and keeps its time."""
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """What is optimised, and what it is kept close to.
+
+    Parameters
+    ----------
+    remeshed : how the control mesh came about, where a mesh was laid over a surface.
+    """
+
+    control: gs.ControlMesh
+    surface: gs.Surface
+    remeshed: Remeshed | None = None
+
+
+def start(project: Project, folder: Path, stage: Stage) -> Start:
+    """The start of *project*: of a mesh file, the mesh itself is the surface.
+
+    Parameters
+    ----------
+    folder : what file names in the project are relative to.
+
+    Raises
+    ------
+    InputError
+        When the surface or the mesh does not carry the net that is asked for.
+    """
+    source = project.source
+    if isinstance(source, RemeshSource):
+        return _remeshed(source, folder, stage)
+    with stage("start mesh"):
+        if isinstance(source, MeshSection):
+            return _of_mesh(source, folder)
+        surface = surface_of(source.surface)
+        return Start(gs.control_patch(surface, patch_of(source.patch)), surface)
+
+
+def _of_mesh(section: MeshSection, folder: Path) -> Start:
+    mesh = gs.read_obj(folder / section.file, unit=gs.Unit.named(section.unit))
+    along_edges = section.lamellas_along == "edges"
+    control = gs.control_mesh(mesh) if along_edges else gs.as_control_mesh(mesh)
+    gs.require_sound(mesh)
+    gs.require_hyperbolic(control.mesh)
+    return Start(control, gs.TriangulatedSurface.of_quads(mesh.vertices, mesh.quads))
+
+
+def _remeshed(source: RemeshSource, folder: Path, stage: Stage) -> Start:
+    named = source.surface.unit
+    unit = None if named is None else gs.Unit.named(named)
+    wish = wish_of(source.remesh)
+    try:
+        with stage("surface"):
+            surface = read_wished(folder / source.surface.file, unit, wish)
+        with stage("remesh"):
+            found = lay(surface, unit, wish)
+            control = found.made.control()
+    except gs.UnitError as error:
+        raise _at("surface.unit", error) from None
+    except gs.SettingError as error:
+        raise _at(f"remesh.{error.where}", error) from None
+    return Start(control, found.made.reference, found)
+
+
+def wish_of(section: RemeshSection) -> Wish:
+    """The mesh that ``[remesh]`` asks for: asymptotic, as lamellas need it."""
+    usual = USUAL_QUADS if section.edge is None else None
+    return Wish(
+        directions=gs.Asymptotic(),
+        quads=section.quads or usual,
+        edge=section.edge,
+        extent=gs.Extent[section.extent.upper()],
+    )
+
+
+def _at(key: str, error: gs.InputError) -> gs.InputError:
+    """*error* with the project's key before the place it names."""
+    place = error.where or ""
+    where = key if key.endswith(place) else f"{key}: {place}"
+    return type(error)(
+        error.what, where=where, value=error.value, limit=error.limit, advice=error.advice
+    )
