@@ -1,8 +1,8 @@
 """Signs and cuts: a pair of line fields becomes two vector fields on a surface cut open.
 
 The frame of a triangle can meet its neighbour's as it is or turned by pi, nothing else (see
-`gridshell.field`). Signs are chosen so that few neighbours disagree; the edges of the cut carry what
-is left, and opened along them the surface has single-valued frames.
+`gridshell.field`). Signs are chosen so that few neighbours disagree; the edges of the cut carry
+what is left, and opened along them the surface has single-valued frames.
 """
 
 from __future__ import annotations

@@ -123,11 +123,9 @@ def ports(chart: ExactChart) -> Ports:
     owner, rank, place, faces, starts, axes = (
         np.concatenate([row[i] for row in rows]) for i in range(6)
     )
-    rim: Mask = np.concatenate([row[6] for row in rows])
     order = np.lexsort((rank, owner))
-    owner, place, faces, starts, axes, rim = (
-        x[order] for x in (owner, place, faces, starts, axes, rim)
-    )
+    rim: Mask = np.concatenate([row[6] for row in rows])[order]
+    owner, place, faces, starts, axes = (x[order] for x in (owner, place, faces, starts, axes))
     key = 4 * place + axes
     by_key = np.argsort(key, kind="stable")
     some = np.unique(number, return_index=True)[1]
