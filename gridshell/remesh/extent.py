@@ -38,7 +38,7 @@ class Cells:
     Parameters
     ----------
     positions : (n, 3) mm; crossings first, ghosts after them.
-    quads : (q, 4).
+    quads : (q, 4), counter-clockwise; the first side runs along family 1.
     ghosts : number of vertices beyond the crossings.
     """
 
@@ -189,7 +189,8 @@ class _Rim:
                 corners += [last, first]
             elif len(chain) != 4:
                 continue
-            found.append(corners)
+            second = int(ports.axes[self.port(start)]) % 2
+            found.append(corners[second:] + corners[:second])
         return found
 
     def _entering(self, key: Key) -> Key:

@@ -25,7 +25,8 @@ class Extracted:
     Parameters
     ----------
     chart, ports, traced : what the cells were read off.
-    cells : (q, 4) crossings around every whole cell, counter-clockwise.
+    cells : (q, 4) crossings around every whole cell, counter-clockwise; the first side runs along
+        family 1, as the third does.
     cell_ports : (q, 4) the port that leaves each of them along the cell.
     non_quads : closed cells of another number of corners.
     """
@@ -60,6 +61,8 @@ def extract(found: Seamless) -> Extracted:
     orbit = np.stack(walk[:4], axis=1)
     closed = (walk[4] == walk[0]) & (orbit.min(axis=1) == walk[0])
     cells = orbit[closed]
+    second = all_ports.axes[cells[:, 0]] % 2 == 1
+    cells[second] = np.roll(cells[second], -1, axis=1)
     owner = all_ports.owner
     return Extracted(chart, all_ports, traced, owner[cells], cells, _other_orbits(onward))
 

@@ -123,8 +123,8 @@ def ports(chart: ExactChart) -> Ports:
     owner, rank, place, faces, starts, axes = (
         np.concatenate([row[i] for row in rows]) for i in range(6)
     )
+    rim: Mask = np.concatenate([row[6] for row in rows])
     order = np.lexsort((rank, owner))
-    rim: Mask = np.concatenate([row[6] for row in rows])[order]
     owner, place, faces, starts, axes = (x[order] for x in (owner, place, faces, starts, axes))
     key = 4 * place + axes
     by_key = np.argsort(key, kind="stable")
@@ -139,7 +139,7 @@ def ports(chart: ExactChart) -> Ports:
         faces=faces,
         starts=starts,
         axes=axes,
-        rim=rim,
+        rim=rim[order],
         keys=key[by_key],
         order=by_key,
         edge_keys=edge_keys,

@@ -1,9 +1,9 @@
 """Two coordinates whose integer lines follow two families of directions.
 
 For each family an anisotropic Poisson energy is minimised over the real unknowns and the integers
-at once: the field says where the lines run (weight *lam*), and the spacing gives way. *lam* = 1
-is the energy of mixed-integer quadrangulation (Bommes, Zimmer and Kobbelt 2009). Integers are
-found exactly, by the closest lattice point in the reduced form.
+at once: the field says where the lines run (weight *lam*), and the spacing gives way. *lam* = 1 is
+the energy of mixed-integer quadrangulation (Bommes, Zimmer and Kobbelt 2009). Integers are found
+exactly, by the closest lattice point in the reduced form.
 """
 
 from __future__ import annotations

@@ -39,7 +39,8 @@ class Quadrangulation:
 
     Parameters
     ----------
-    mesh : M, mm, vertices on the surface; its edges follow the two families.
+    mesh : M, mm, vertices on the surface; its edges follow the two families, the first and third
+        edge of every quad family 1.
     reference : the surface itself, to keep nets close to.
     curved, field : the working surface and the directions on it, refined at singular points.
     chart : the seamless chart M was read off.
@@ -60,12 +61,15 @@ class Quadrangulation:
     def control(self) -> ControlMesh:
         """The control mesh C: one colour of M's vertices, that of the singular ones (Fig. 6 d).
 
+        Its diagonals of family 1 follow the field's first direction.
+
         Raises
         ------
         MeshError
             When M is too small or too narrow to hold one.
         """
-        return control_mesh(self.mesh)
+        control = control_mesh(self.mesh)
+        return control if _begins_with(self.mesh, control) else control.families_exchanged()
 
 
 def quadrangulate(
@@ -137,6 +141,17 @@ def quadrangulate(
     return Quadrangulation(
         mesh, ready.reference, refined.curved, refined.field, chart, points, errors, report
     )
+
+
+def _begins_with(mesh: QuadMesh, control: ControlMesh) -> bool:
+    """Whether the family 1 of *control* is that of the first edges of the quads of *mesh*."""
+    corners = control.vertices[control.quads[0]]
+    ring = [int(np.flatnonzero((mesh.vertices == corner).all(axis=1))[0]) for corner in corners]
+    leaving = np.isin(mesh.target, ring)
+    reached = np.bincount(mesh.origin[leaving], minlength=len(mesh.vertices))
+    centre = int(np.flatnonzero((reached == 4) & ~mesh.on_boundary)[0])
+    spoke = np.flatnonzero((mesh.origin == centre) & (mesh.target == ring[0]))[0]
+    return bool(spoke % 2 == 0)
 
 
 def _about_quads(source: Source, quads: int | None, edge: float | None) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,12 @@ from gridshell.surface.forms import dot
 from gridshell.surface.surface import Foot, checked_points
 
 _FIRST_CANDIDATES = 8
+_UNUSUAL = 1.5
+"""Times the median reach of the triangles: what reaches further is quartered for the search."""
+
+_MOST_PIECES = 4
+"""Pieces per triangle at most, when the triangles differ much in size."""
+
 _BLOCK = 200_000
 """Pairs of point and triangle looked at together: bounds the memory."""
 
@@ -81,24 +87,27 @@ class TriangulatedSurface:
     def locate(self, points: Points) -> tuple[Indices, Floats]:
         """Nearest triangle (n,) and barycentric weights (n, 3) of the foot in it.
 
-        Candidates are the triangles with the nearest centroids; a foot is final when no triangle
+        Candidates are the triangles of the nearest middles; a foot is final when no triangle of one
         further away can reach closer, and otherwise looked for among twice as many.
         """
+        middles = self._middles
         best = np.zeros(len(points), dtype=np.int64)
         weights = np.zeros((len(points), 3))
-        rows, count = np.arange(len(points)), min(_FIRST_CANDIDATES, len(self.triangles))
+        most = len(middles.owner)
+        rows, count = np.arange(len(points)), min(_FIRST_CANDIDATES, most)
         while len(rows):
             unsure = []
             for block in np.array_split(rows, max(1, len(rows) * count // _BLOCK)):
-                away, near = self._tree.query(points[block], k=count)
-                away, near = away.reshape(len(block), -1), near.reshape(len(block), -1)
+                away, near = middles.tree.query(points[block], k=count)
+                away = away.reshape(len(block), -1)
+                near = middles.owner[near.reshape(len(block), -1)]
                 share, distance = self.nearest_in(points[block], near)
                 pick = np.argmin(distance, axis=1)
                 line = np.arange(len(block))
                 best[block], weights[block] = near[line, pick], share[line, pick]
-                reach = distance[line, pick] + self._reach
-                unsure.append(block[(away[:, -1] < reach) & (count < len(self.triangles))])
-            rows, count = np.concatenate(unsure), min(2 * count, len(self.triangles))
+                reach = distance[line, pick] + middles.reach
+                unsure.append(block[(away[:, -1] < reach) & (count < most)])
+            rows, count = np.concatenate(unsure), min(2 * count, most)
         return best, weights
 
     def nearest_in(self, points: Points, near: Indices) -> tuple[Floats, Floats]:
@@ -116,20 +125,8 @@ class TriangulatedSurface:
         return np.asarray(np.cross(b - a, c - a))
 
     @cached_property
-    def _centroids(self) -> Points:
-        return np.asarray(self.vertices[self.triangles].mean(axis=1))
-
-    @cached_property
-    def _reach(self) -> float:
-        """Largest distance of a corner from its triangle's centroid, mm."""
-        offset = self.vertices[self.triangles] - self._centroids[:, None]
-        return float(np.linalg.norm(offset, axis=2).max())
-
-    @cached_property
-    def _tree(self) -> Any:
-        from scipy.spatial import cKDTree
-
-        return cKDTree(self._centroids)
+    def _middles(self) -> _Middles:
+        return _middles(self.vertices[self.triangles])
 
     @cached_property
     def _vertex_normals(self) -> Vectors:
@@ -168,6 +165,41 @@ class TriangulatedSurface:
         a, b, c = np.linalg.solve(gram, np.einsum("fri,fr->fi", rows, right)[..., None])[..., 0].T
         mean, half = (a + c) / 2.0, np.hypot((a - c) / 2.0, b)
         return np.stack([mean - half, mean + half], axis=-1)
+
+
+class _Middles(NamedTuple):
+    """Middles of triangles, and of the pieces of those much larger than the others."""
+
+    tree: Any
+    owner: Indices
+    """(m,) the triangle each middle belongs to."""
+    reach: float
+    """No point of a piece is further from its middle, mm."""
+
+
+def _middles(corners: Floats) -> _Middles:
+    """Quarter the triangles (f, 3, 3) that reach far, so that one reach holds for all closely."""
+    from scipy.spatial import cKDTree
+
+    pieces, owner = corners, np.arange(len(corners))
+    usual = _UNUSUAL * float(np.median(_reaches(corners)))
+    while len(pieces) < _MOST_PIECES * len(corners):
+        large = _reaches(pieces) > usual
+        if not large.any():
+            break
+        a, b, c = np.moveaxis(pieces[large], 1, 0)
+        ab, bc, ca = (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0
+        quarters = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        split = [np.stack(quarter, axis=1) for quarter in quarters]
+        pieces = np.concatenate([pieces[~large], *split])
+        owner = np.concatenate([owner[~large], np.tile(owner[large], 4)])
+    return _Middles(cKDTree(pieces.mean(axis=1)), owner, float(_reaches(pieces).max()))
+
+
+def _reaches(corners: Floats) -> Floats:
+    """(f,) largest distance of a corner from the middle of its triangle, mm."""
+    offset = corners - corners.mean(axis=1, keepdims=True)
+    return np.asarray(np.linalg.norm(offset, axis=2).max(axis=1))
 
 
 def _barycentric(points: Points, corners: Floats) -> Floats:
