@@ -125,7 +125,7 @@ def quadrangulate(
         positions = ready.reference.closest(positions).points
     if len(chart.folded) == 0:  # folds make cells that are none, which are left out
         require_around(found, positions, spacing)
-    made = cells(found, positions, extent)
+    made = cells(found, positions, extent, onto=lambda x: ready.reference.closest(x).points)
     mesh = tidy(made, spacing)
     points, errors = _strays(found, refined.field)
     hand = directions.hand if isinstance(directions, Conjugate) else None

@@ -6,6 +6,7 @@ import numpy as np
 
 from gridshell.arrays import Indices, Mask, Points
 from gridshell.errors import TargetTooCoarseError
+from gridshell.folding import collapsed
 from gridshell.mesh import QuadMesh, main_piece
 from gridshell.remesh.extent import Cells
 from gridshell.remesh.extraction import Extracted
@@ -61,7 +62,7 @@ def tidy(made: Cells, spacing: float) -> QuadMesh:
     TargetTooCoarseError
         When no cell is left.
     """
-    quads = made.quads
+    quads = _without_spoilt_ends(made, spacing)
     for _ in range(_ROUNDS):  # what was left out may have held others together
         good = _single(quads)
         quads = quads[good]
@@ -81,6 +82,23 @@ def tidy(made: Cells, spacing: float) -> QuadMesh:
     return QuadMesh(made.positions[used], compact.reshape(-1, 4))
 
 
+def _without_spoilt_ends(made: Cells, spacing: float) -> Indices:
+    """Cells at the rim that are turned over, slivers, or folded onto others are left out."""
+    spoilt = collapsed(made.positions, made.quads, spacing)
+    spoilt[: made.whole] = False
+    quads = made.quads[~spoilt]
+    sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2)
+    order = np.lexsort(np.sort(sides, axis=1).T)
+    named = np.sort(sides, axis=1)[order]
+    same = np.flatnonzero((named[1:] == named[:-1]).all(axis=1))
+    pairs = np.stack([order[same] // 4, order[same + 1] // 4], axis=1)
+    corners = made.positions[quads]
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    folded = pairs[np.einsum("kc,kc->k", normal[pairs[:, 0]], normal[pairs[:, 1]]) < 0.0]
+    outside = np.unique(folded.max(axis=1))
+    return np.asarray(np.delete(quads, outside[outside >= made.whole], axis=0))
+
+
 def _middle(positions: Points) -> str | None:
     good = positions[np.isfinite(positions).all(axis=1)]
     return place(good.mean(axis=0)) if len(good) else None
@@ -90,10 +108,10 @@ def _single(quads: Indices) -> Mask:
     """(q,) quads with four different corners that are the first on each of their sides."""
     if len(quads) == 0:
         return np.zeros(0, dtype=bool)
-    good: Mask = (np.diff(np.sort(quads, axis=1), axis=1) > 0).all(axis=1)
-    kept = np.flatnonzero(good)
+    kept = np.flatnonzero((np.diff(np.sort(quads, axis=1), axis=1) > 0).all(axis=1))
     sides = quads[kept] * (int(quads.max()) + 1) + np.roll(quads[kept], -1, axis=1)
     _, first, number = np.unique(sides, return_index=True, return_inverse=True)
     own = first[number].reshape(-1, 4) == np.arange(sides.size).reshape(-1, 4)
+    good = np.zeros(len(quads), dtype=bool)
     good[kept] = own.all(axis=1)
     return good

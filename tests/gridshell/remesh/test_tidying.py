@@ -13,7 +13,7 @@ from gridshell.remesh.tidying import require_around, tidy
 
 def cells_at(quads):
     rng = np.random.default_rng(0)
-    return Cells(rng.random((int(quads.max()) + 1, 3)), quads, 0)
+    return Cells(rng.random((int(quads.max()) + 1, 3)), quads, len(quads))
 
 
 def test_a_grid_stays_as_it_is():
