@@ -12,6 +12,8 @@ from .finding import Finding as Finding
 from .finding import Severity as Severity
 from .fitting import Fit as Fit
 from .fitting import fit as fit
+from .grouping import Group as Group
+from .grouping import Member as Member
 from .joints import JOINTS as JOINTS
 from .joints import Joint as Joint
 from .joints import SlotJoint as SlotJoint
@@ -21,7 +23,12 @@ from .loop import closure as closure
 from .nesting import NestedSheet as NestedSheet
 from .nesting import nest as nest
 from .node import Node as Node
+from .outlines import Frame as Frame
 from .package import run as run
+from .panel import Panel as Panel
+from .panel import PanelSpec as PanelSpec
+from .panel import panel_groups as panel_groups
+from .panel import panels as panels
 from .parts import FlatPart as FlatPart
 from .parts import flat_parts as flat_parts
 from .project import project_text as project_text
@@ -31,6 +38,7 @@ from .solid import solids as solids
 from .stock import (
     BIRCH_PLY as BIRCH_PLY,
 )
+from .stock import GLASS as GLASS
 from .stock import (
     S235 as S235,
 )
@@ -48,5 +56,12 @@ from .stock import (
 )
 from .structures import Structure as Structure
 from .structures import structure as structure
+from .support import PlateSection as PlateSection
+from .support import SupportPlate as SupportPlate
+from .support import TwistCost as TwistCost
+from .support import plate_groups as plate_groups
+from .support import support_findings as support_findings
+from .support import supports as supports
+from .support import twist_cost as twist_cost
 from .unroll import Development as Development
 from .unroll import unroll as unroll
