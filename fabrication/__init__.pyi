@@ -1,6 +1,15 @@
 """Public names of fabrication, each by the module that holds it."""
 
+from .beam_layout import Beam as Beam
+from .beam_layout import BeamEnd as BeamEnd
+from .beam_layout import BeamSection as BeamSection
+from .beam_layout import beams as beams
 from .checks import check as check
+from .connector import Arm as Arm
+from .connector import Connector as Connector
+from .connector import ConnectorSpec as ConnectorSpec
+from .connector import connector_findings as connector_findings
+from .connector import connectors as connectors
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.report import write_report as write_report
@@ -8,6 +17,9 @@ from .export.schedule import write_schedule as write_schedule
 from .export.step import assembly as assembly
 from .export.step import write_step as write_step
 from .export.step_reader import read_step as read_step
+from .facade import DiagonalRule as DiagonalRule
+from .facade import Facade as Facade
+from .facade import triangulated_facade as triangulated_facade
 from .finding import Finding as Finding
 from .finding import Severity as Severity
 from .fitting import Fit as Fit

@@ -158,6 +158,9 @@ from .net_report import history_report as history_report
 from .net_report import net_report as net_report
 from .optimization import OptimizedNet as OptimizedNet
 from .optimization import optimize as optimize
+from .panel_families import PanelFamilies as PanelFamilies
+from .panel_families import cluster_panels as cluster_panels
+from .panel_families import panel_curvatures as panel_curvatures
 from .patch import (
     AsymptoticPatch as AsymptoticPatch,
 )
