@@ -171,6 +171,9 @@ from .patch import (
     BisectingPatch as BisectingPatch,
 )
 from .patch import (
+    ConjugatePatch as ConjugatePatch,
+)
+from .patch import (
     Patch as Patch,
 )
 from .patch import (

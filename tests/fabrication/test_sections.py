@@ -2,7 +2,7 @@ import pytest
 from pydantic import ValidationError
 
 import fabrication as fab
-from fabrication.sections import MeshSection, SurfaceSource
+from fabrication.source_sections import MeshSection, SurfaceSource
 
 REST = {
     "name": "roof",
