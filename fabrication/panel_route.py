@@ -62,6 +62,7 @@ class PanelRoute:
             angle=None if net.angle is None else radians(net.angle),
             rhombus=net.rhombus,
             square=net.square,
+            conditions=(gs.FlatRim(),),
             steps=net.steps,
             tolerance=net.tolerance,
         )

@@ -27,7 +27,7 @@ from fabrication.support import (
 )
 from gridshell import PanelMesh, averaged_normals
 
-SAME = 0.01
+SAME = 1e-3
 """Parts whose corners agree this well are one shape in the STEP file, mm."""
 
 
