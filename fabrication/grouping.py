@@ -8,7 +8,7 @@ every member is within the tolerance of that one, so the result depends on nothi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,6 +73,11 @@ def equal_groups(
             group, shift, mirrored, deviation = found
             groups[group].append(Member(index, shift, mirrored, deviation))
     return tuple(Group(f"{prefix}{n}", tuple(g)) for n, g in enumerate(groups, start=1))
+
+
+def group_names(marks: Sequence[str], groups: Sequence[Group]) -> Mapping[str, str]:
+    """The group of every mark."""
+    return {marks[member.index]: group.name for group in groups for member in group.members}
 
 
 class _Firsts:

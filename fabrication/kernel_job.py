@@ -37,14 +37,19 @@ class Work(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class LamellaWork:
-    """The bent and twisted strips of a structure, in an assembly called *name*."""
+    """The bent and twisted strips of a structure, in an assembly called *name*.
+
+    *more* bodies, of a facade, are written beside it, by *beside*'s name.
+    """
 
     structure: Structure
     parts: Sequence[FlatPart]
     name: str
+    more: Bodies | None = None
+    beside: str = ""
 
     def do(self, step: Path, lap: Lap) -> tuple[Any, ...]:
-        """See :class:`Work`; returns ``StepPart``s."""
+        """See :class:`Work`; returns ``StepPart``s, and then ``StepPrism``s of *more*."""
         from fabrication.export.step import assembly, write_step
         from fabrication.export.step_reader import read_step
         from fabrication.solid import solids
@@ -55,7 +60,10 @@ class LamellaWork:
         lap("STEP")
         found = read_step(step)
         lap("STEP read back")
-        return found
+        if self.more is None:
+            return found
+        other = BodiesWork(self.more, self.name).do(step.with_name(self.beside), lap)
+        return (*found, *other)
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +169,8 @@ def _work(order: Path, wait: Any) -> KernelResult | GridshellError | None:
     start = time.perf_counter()
 
     def lap(stage: str) -> None:
-        seconds[stage] = round(time.perf_counter() - start - sum(seconds.values()), 3)
+        passed = time.perf_counter() - start - sum(seconds.values())
+        seconds[stage] = round(seconds.get(stage, 0.0) + passed, 3)
 
     try:
         import fabrication.export.step_bodies

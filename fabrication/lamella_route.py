@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from math import radians
 from pathlib import Path
@@ -11,6 +11,9 @@ from pathlib import Path
 import gridshell as gs
 from fabrication.checks import check
 from fabrication.errors import KernelError
+from fabrication.export.step_prism_reader import StepPrism
+from fabrication.export.step_reader import StepPart
+from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_findings, facade_system
 from fabrication.finding import Finding
 from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
@@ -49,8 +52,9 @@ class LamellaRoute:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """One sheet at least."""
-        return ("sheets/sheet-01.dxf",)
+        """One sheet at least, and the facade's where there is one."""
+        facade = () if self.project.facade is None else (STEP_FILE, "sheets/panels-01.dxf")
+        return ("sheets/sheet-01.dxf", *facade)
 
     def recipe(self) -> gs.NetRecipe:
         """An A-net."""
@@ -67,8 +71,16 @@ class LamellaRoute:
             joint = SlotJoint(self.joint.clearance, self.joint.depth_clearance)
             parts = flat_parts(built, joint)
             sheets = nest(parts, sheet_of(self.project.sheet))
+            facade = self._facade(skin, built)
             findings = (*joint.findings(built), *check(built, parts))
-        return LamellaSystem(self.project, joint, built, parts, sheets, findings)
+        return LamellaSystem(self.project, joint, built, parts, sheets, facade, findings)
+
+    def _facade(self, net: gs.DiagonalMesh, built: Structure) -> FacadeSystem | None:
+        project = self.project
+        if project.facade is None:
+            return None
+        sheet = sheet_of(project.panel_sheet or project.sheet)
+        return facade_system(project.facade, net, built, sheet)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +92,7 @@ class LamellaSystem:
     structure: Structure
     parts: tuple[FlatPart, ...]
     sheets: tuple[NestedSheet, ...]
+    facade: FacadeSystem | None
     findings: Sequence[Finding]
 
     def write(self, draft: Path, cad: Kernel, clock: Clock) -> Written:
@@ -89,19 +102,33 @@ class LamellaSystem:
         from fabrication.loop import compare
 
         name, material = self.project.name, self.structure.profile.material
-        cad.order(LamellaWork(self.structure, self.parts, name), draft / "structure.step")
+        facade = self.facade
+        work = LamellaWork(self.structure, self.parts, name)
+        if facade is not None:
+            work = replace(work, more=facade.bodies, beside=STEP_FILE)
+        cad.order(work, draft / "structure.step")
         with clock.stage("fit"):
             fitted = fit(self.structure, self.parts)
         with clock.stage("sheets"):
             files = write_dxf(self.sheets, draft / "sheets", name=name, material=material.name)
-            write_schedule(draft / "parts.csv", self.parts, self.sheets, material)
             drawn = [part for path in files for part in read_dxf(path)]
+            lines = [] if facade is None else facade.lines()
+            panels = [] if facade is None else facade.write_sheets(draft / "sheets", name=name)
+            write_schedule(draft / "parts.csv", self.parts, self.sheets, material, lines)
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):
             skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
             net = skins[0 if self.project.net.skin == "D1" else 1]
-            closed = asdict(compare(self.structure, self.parts, net, drawn, solid.parts))
+            strips = [part for part in solid.parts if isinstance(part, StepPart)]
+            closed = asdict(compare(self.structure, self.parts, net, drawn, strips))
+            findings = lamella_loop_findings(closed, fitted)
+            more: Report = {}
+            if facade is not None:
+                prisms = [part for part in solid.parts if isinstance(part, StepPrism)]
+                glazed = facade.closure(net, self.structure, panels, prisms)
+                more = {"facade": facade.figures(glazed)}
+                findings += facade_findings(glazed)
         return Written(
             sections={
                 "structure": self._figures(fitted),
@@ -111,8 +138,9 @@ class LamellaSystem:
                     "worst": fitted.worst,
                     "nodes": fitted.nodes,
                 },
+                **more,
             },
-            findings=lamella_loop_findings(closed, fitted),
+            findings=findings,
             kernel_seconds=solid.seconds,
         )
 
@@ -128,6 +156,7 @@ class LamellaSystem:
             parts=self.parts,
             sheets=self.sheets,
             clearance=self.joint.clearance,
+            facade=None if self.facade is None else self.facade.built,
             pictures=pictures,
         )
 

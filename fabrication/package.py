@@ -27,7 +27,10 @@ from fabrication.starts import Start, start
 FILES = ("net.json", "net.obj", "parts.csv", "report.html", "report.json", "structure.step")
 """What every run makes, besides ``sheets/*.dxf``."""
 
-_STALE = tuple(f"sheets/{name}-*.dxf" for name in ("sheet", "panels", "plates"))
+_STALE = (
+    *(f"sheets/{name}-*.dxf" for name in ("sheet", "panels", "plates")),
+    "facade.step",
+)
 
 _ANCHORS: dict[str, gs.Anchor] = {
     "free": gs.Free(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import degrees, radians
@@ -12,7 +12,7 @@ import gridshell as gs
 from fabrication.bodies import Bodies, structure_bodies
 from fabrication.errors import KernelError
 from fabrication.finding import Finding
-from fabrication.grouping import Group
+from fabrication.grouping import group_names
 from fabrication.kernel_job import BodiesWork, Kernel, KernelResult
 from fabrication.nesting import NestedSheet, nest
 from fabrication.panel_sections import PanelsSection
@@ -231,11 +231,6 @@ class PanelNetSystem:
     def _height(self) -> float:
         section = self.built.system.plates
         return 0.0 if section is None else section.height
-
-
-def group_names(marks: Sequence[str], groups: Sequence[Group]) -> Mapping[str, str]:
-    """The group of every mark."""
-    return {marks[member.index]: group.name for group in groups for member in group.members}
 
 
 def _per_metre(plate: SupportPlate) -> float:

@@ -52,4 +52,7 @@ class FacadeSection(Section):
     gap: Distance = 10.0
     clearance: Distance = 0.0
     material: Sheeting = "glass"
+    above: Annotated[
+        Distance | None, Field(description="half the strip's width: on its upper edge")
+    ] = None
     rule: Literal["shorter", "flatter"] = "shorter"

@@ -19,7 +19,7 @@ def summary_lines(report: Report) -> list[str]:
 def _strips(report: Report) -> list[str]:
     built, closed, angle = report["structure"], report["closure"], report["net"]["node_angle_deg"]
     clash = report["fit"]["clash_mm3"]["max"]
-    return [
+    lines = [
         f"{plural(built['lamellas'], 'lamella')}, {plural(built['joints'], 'joint')}, "
         f"{length(built['total_length_m'])}, {mass(built['mass_kg'])} on "
         f"{plural(built['sheets'], 'sheet')}; "
@@ -27,6 +27,14 @@ def _strips(report: Report) -> list[str]:
         f"files close onto the design within {closed['max_mm']:.3f} mm, volumes within "
         f"{closed['volume_ppm']:.1f} ppm; largest clash {clash:.1g} mm3",
     ]
+    glass = report.get("facade")
+    if glass is not None:
+        lines.append(
+            f"facade of {plural(glass['panels'], 'triangular panel')} in "
+            f"{plural(glass['panel_groups'], 'group')}, "
+            f"{plural(glass['profiles'], 'secondary profile')}, {length(glass['profile_length_m'])}"
+        )
+    return lines
 
 
 def _planar(report: Report) -> list[str]:

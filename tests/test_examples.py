@@ -91,6 +91,15 @@ def test_principal_plates_of_a_free_roof_beat_averaged_normals(packages):
 
 
 @pytest.mark.xdist_group("examples")
+def test_every_bay_of_the_glazed_net_has_two_triangles(packages):
+    report, out = packages("12_glazed_enneper")
+    assert report["facade"]["panels"] == 2 * 8 * 8
+    assert report["facade"]["profiles"] == 8 * 8
+    assert report["facade"]["closure_mm"]["max"] < 0.05
+    assert (out / "facade.step").is_file()
+
+
+@pytest.mark.xdist_group("examples")
 def test_rhombi_at_70_degrees_cost_a_twist_that_is_told(packages):
     report, _ = packages("10_rhombus_panels_70")
     assert report["net"]["rhombus_error"]["max"] < 1e-6

@@ -37,7 +37,7 @@ def panel_figure(built: PanelStructure) -> Any:
     """The panels by group, the plates by how far they are out of plane, the connectors."""
     vertices = built.mesh.vertices
     centre = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
-    traces = [*_panels(built, centre)]
+    traces = panel_traces(built, centre)
     if built.plates:
         traces.append(_plates(built, centre))
     if built.connectors:
@@ -47,7 +47,8 @@ def panel_figure(built: PanelStructure) -> Any:
     return go.Figure(traces, {"template": "none", "scene": {"camera": camera(points)}})
 
 
-def _panels(built: PanelStructure, centre: Floats) -> list[Any]:
+def panel_traces(built: PanelStructure, centre: Floats) -> list[Any]:
+    """The panels by group, and their edges; *centre* (3,) is where the view's origin lies, mm."""
     colours, texts, polygons, shades = group_colours(built.panel_groups), [], [], []
     group_of = {m.index: n for n, g in enumerate(built.panel_groups) for m in g.members}
     lift = built.system.panels.thickness

@@ -26,6 +26,7 @@ from fabrication.export.shell import shell_figure
 from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
 from fabrication.nesting import NestedSheet
+from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.structures import Structure
 from gridshell.arrays import Floats
@@ -43,6 +44,7 @@ def write_report(
     parts: Sequence[FlatPart],
     sheets: Sequence[NestedSheet] = (),
     clearance: float | None = None,
+    facade: PanelStructure | None = None,
     pictures: Sequence[Mapping[str, Any]] = (),
 ) -> None:
     """Write the page.
@@ -55,6 +57,7 @@ def write_report(
     structure, parts : one part per lamella, in the structure's order.
     sheets : where the parts lie; without them the cut list names no sheet.
     clearance : of the slots, mm; None leaves it out.
+    facade : panels above the strips, where there are any.
     pictures : of the way from the surface to the net, see ``stages``.
 
     Raises
@@ -67,7 +70,7 @@ def write_report(
         name=name,
         report=report,
         pictures=pictures,
-        figure=shell_figure(structure, parts),
+        figure=_figure(structure, parts, facade),
         masses=[mass(part, structure.profile.material) for part in parts],
         sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
@@ -85,6 +88,18 @@ def write_report(
         raise OutputError(
             "The report cannot be written", where=str(path), value=error.strerror or ""
         ) from None
+
+
+def _figure(structure: Structure, parts: Sequence[FlatPart], facade: PanelStructure | None) -> Any:
+    """The strips, and the panels above them: hidden until they are asked for."""
+    figure = shell_figure(structure, parts)
+    if facade is not None:
+        from fabrication.export.panel_view import panel_traces
+
+        positions = np.array([node.position for node in structure.nodes])
+        for trace in panel_traces(facade, (positions.min(axis=0) + positions.max(axis=0)) / 2.0):
+            figure.add_trace(trace.update(visible="legendonly"))
+    return figure
 
 
 def shared(
