@@ -17,7 +17,6 @@ from fabrication.panel_structure import (
     COLOURS,
     SAME,
     PanelStructure,
-    connector_span,
     sections_alike,
 )
 from gridshell.arrays import Floats
@@ -185,11 +184,12 @@ def _plates(built: PanelStructure) -> Prisms:
 
 
 def _connectors(built: PanelStructure) -> Prisms:
+    pieces = built.pieces
     return prisms(
         "connectors",
-        [c.mark for c in built.connectors],
-        [c.section() for c in built.connectors],
-        [c.frame for c in built.connectors],
-        sections_alike(built.connectors, SAME),
-        connector_span(built.system),
+        [piece.mark for piece in pieces],
+        [piece.connector.section() for piece in pieces],
+        [piece.frame for piece in pieces],
+        sections_alike(pieces, SAME),
+        (0.0, pieces[0].height if pieces else 0.0),
     )

@@ -21,7 +21,10 @@ class SheetPart(Protocol):
 
     @property
     def outline(self) -> Floats:
-        """(k, 2) closed, counter-clockwise, within (0, 0) .. (length, width), mm."""
+        """(k, 2) closed, counter-clockwise, within (0, 0) .. (length, width), mm.
+
+        Or (k, 3) with bulges, tan(sweep / 4), of the pieces from each corner to the next.
+        """
 
     @property
     def labels(self) -> tuple[Label, ...]:

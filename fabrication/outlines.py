@@ -129,6 +129,22 @@ def polygon_area(polygon: Floats) -> float:
     return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2.0
 
 
+def outline_area(outline: Floats) -> float:
+    """Area of an outline (k, 2), or (k, 3) with the bulges of its pieces, mm2.
+
+    The bulge is tan(sweep / 4); a piece with one adds the segment between its arc and its chord.
+    """
+    flat = polygon_area(outline[:, :2])
+    if outline.shape[1] == 2:
+        return flat
+    chord = np.linalg.norm(np.roll(outline[:, :2], -1, axis=0) - outline[:, :2], axis=1)
+    sweep = 4.0 * np.arctan(outline[:, 2])
+    curved = outline[:, 2] != 0.0
+    radius = chord[curved] / (2.0 * np.sin(sweep[curved] / 2.0))
+    segments = radius**2 / 2.0 * (sweep[curved] - np.sin(sweep[curved]))
+    return flat + float(segments.sum())
+
+
 def _side(a: Floats, b: Floats, c: Floats) -> Floats:
     u, v = b - a, c - a
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

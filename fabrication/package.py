@@ -28,7 +28,7 @@ FILES = ("net.json", "net.obj", "parts.csv", "report.html", "report.json", "stru
 """What every run makes, besides ``sheets/*.dxf``."""
 
 _STALE = (
-    *(f"sheets/{name}-*.dxf" for name in ("sheet", "panels", "plates")),
+    *(f"sheets/{name}-*.dxf" for name in ("sheet", "panels", "plates", "stars")),
     "facade.step",
 )
 

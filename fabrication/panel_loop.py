@@ -15,11 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fabrication.connector import connectors
+from fabrication.connector_pieces import connector_pieces
 from fabrication.export.dxf import DxfPart
 from fabrication.export.step_prism_reader import StepPrism
 from fabrication.outlines import best_frame, inset, polygon_area
 from fabrication.panel import panel_mark
-from fabrication.panel_structure import PanelSystem, connector_span
+from fabrication.panel_structure import PanelSystem, connector_middle
 from fabrication.support import PlateSection, plate_mark
 from gridshell import FileError, PanelMesh
 from gridshell.arrays import Floats, Points, unit
@@ -84,7 +85,9 @@ def panel_closure(
     flat = {part.mark: part for part in drawn}
     bent = {solid.mark: solid for solid in solids}
     wanted = [*_panels(mesh, system), *_plates(mesh, system.plates)]
-    return closed(wanted, flat, bent, list(_connector_distances(mesh, system, bent)), system, mesh)
+    return closed(
+        wanted, flat, bent, list(_connector_distances(mesh, system, flat, bent)), system, mesh
+    )
 
 
 def closed(
@@ -123,7 +126,7 @@ def closed(
         volume_ppm=float(ppm),
         panels=len(mesh.faces),
         plates=0 if system.plates is None else len(mesh.edges),
-        connectors=len(others),
+        connectors=len({mark for mark, _ in others}),
     )
 
 
@@ -190,14 +193,30 @@ def _flattened(corners: Points) -> Points:
 
 
 def _connector_distances(
-    mesh: PanelMesh, system: PanelSystem, bent: dict[str, StepPrism]
+    mesh: PanelMesh,
+    system: PanelSystem,
+    flat: dict[str, DxfPart],
+    bent: dict[str, StepPrism],
 ) -> Iterator[tuple[str, float]]:
+    """Of every cylinder or star plate: of its solid, and of its flat outline where it has one."""
     if system.connectors is None:
         return
-    low, _ = connector_span(system)
-    for connector in connectors(mesh, system.connectors):
-        if connector.mark not in bent:
-            raise FileError("A connector is missing from the files", where=connector.mark)
-        frame = connector.frame
-        corners = frame.place(connector.section()[:, :2]) + low * frame.normal
-        yield connector.mark, corner_distance(corners, bent[connector.mark].low)
+    made = connectors(mesh, system.connectors)
+    for piece in connector_pieces(made, connector_middle(system), system.star):
+        corners = piece.connector.section()[:, :2]
+        missing = piece.mark not in bent or (system.star is not None and piece.mark not in flat)
+        if missing:
+            raise FileError("A connector is missing from the files", where=piece.mark)
+        yield piece.mark, corner_distance(piece.frame.place(corners), bent[piece.mark].low)
+        if system.star is not None:
+            yield piece.mark, _turned_distance(flat[piece.mark].outline, corners)
+
+
+def _turned_distance(outline: Floats, corners: Floats) -> float:
+    """Largest distance of an outline (k, 2) from corners in the same order, laid over them, mm."""
+    if outline.shape != corners.shape:
+        return float("inf")
+    a, b = (x[:, 0] + 1j * x[:, 1] for x in (outline, corners))
+    a, b = a - a.mean(), b - b.mean()
+    turn = complex((np.conj(a) * b).sum())
+    return float(np.abs(turn / abs(turn) * a - b).max())

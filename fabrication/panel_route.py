@@ -19,7 +19,6 @@ from fabrication.panel_sections import PanelsSection
 from fabrication.panel_settings import panel_system
 from fabrication.panel_structure import (
     PanelStructure,
-    connector_mass,
     panel_structure,
 )
 from fabrication.routes import (
@@ -33,7 +32,7 @@ from fabrication.routes import (
 )
 from fabrication.sections import Project
 from fabrication.settings import sheet_of
-from fabrication.sheet_parts import panel_piece, plate_piece
+from fabrication.sheet_parts import SheetPiece, panel_piece, plate_piece, star_piece
 from fabrication.support import SupportPlate
 
 _SKINS = {"D1": gs.Skin.D1, "D2": gs.Skin.D2, "P": gs.Skin.PATTERN}
@@ -80,8 +79,9 @@ class PanelRoute:
             stock = sheet_of(project.panel_sheet or project.sheet)
             panels = nest([panel_piece(p) for p in built.panels], stock)
             plates = nest([plate_piece(p) for p in built.plates], sheet_of(project.sheet))
+            stars = nest(_stars(built), sheet_of(project.sheet))
             bodies = structure_bodies(built)
-        return PanelNetSystem(project, built, panels, plates, bodies, findings)
+        return PanelNetSystem(project, built, panels, plates, stars, bodies, findings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +92,7 @@ class PanelNetSystem:
     built: PanelStructure
     panel_sheets: tuple[NestedSheet, ...]
     plate_sheets: tuple[NestedSheet, ...]
+    star_sheets: tuple[NestedSheet, ...]
     bodies: Bodies
     findings: Sequence[Finding]
 
@@ -105,7 +106,11 @@ class PanelNetSystem:
         with clock.stage("sheets"):
             files = self._write_sheets(draft / "sheets")
             write_panel_schedule(
-                draft / "parts.csv", self.built, self.panel_sheets, self.plate_sheets
+                draft / "parts.csv",
+                self.built,
+                self.panel_sheets,
+                self.plate_sheets,
+                self.star_sheets,
             )
             drawn = [part for path in files for part in read_dxf(path)]
         with clock.stage("solids"):
@@ -147,6 +152,7 @@ class PanelNetSystem:
             built=self.built,
             panel_sheets=self.panel_sheets,
             plate_sheets=self.plate_sheets,
+            star_sheets=self.star_sheets,
             pictures=pictures,
         )
 
@@ -183,14 +189,22 @@ class PanelNetSystem:
                 prefix="plates",
                 alike=plates,
             )
+        if system.connector_material is not None and self.star_sheets:
+            stars = group_names([p.mark for p in self.built.pieces], self.built.connector_groups)
+            files += write_dxf(
+                self.star_sheets,
+                folder,
+                name=name,
+                material=system.connector_material.name,
+                prefix="stars",
+                alike=stars,
+            )
         return files
 
     def _figures(self) -> Report:
         built = self.built
-        material = built.system.connector_material
         mass = sum(p.mass for p in built.panels) + sum(p.mass for p in built.plates)
-        if material is not None:
-            mass += sum(connector_mass(c, material) for c in built.connectors)
+        mass += sum(built.piece_mass(piece) for piece in built.pieces)
         return {
             "panels": len(built.panels),
             "plates": len(built.plates),
@@ -207,9 +221,10 @@ class PanelNetSystem:
                 "max": degrees(max(float(p.corner_angles.max()) for p in built.panels)),
             },
             "mass_kg": float(f"{mass:.6g}"),
-            "sheets": len(self.panel_sheets) + len(self.plate_sheets),
+            "sheets": len(self.panel_sheets) + len(self.plate_sheets) + len(self.star_sheets),
             "panel_sheets": len(self.panel_sheets),
             "plate_sheets": len(self.plate_sheets),
+            **({} if built.system.star is None else {"star_plates": len(built.pieces)}),
         }
 
     def _supports(self) -> Report | None:
@@ -231,6 +246,11 @@ class PanelNetSystem:
     def _height(self) -> float:
         section = self.built.system.plates
         return 0.0 if section is None else section.height
+
+
+def _stars(built: PanelStructure) -> list[SheetPiece]:
+    """The star plates; cylinders are not cut from sheets."""
+    return [] if built.system.star is None else [star_piece(piece) for piece in built.pieces]
 
 
 def _per_metre(plate: SupportPlate) -> float:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from fabrication.section_types import Distance, Place, Section, Sheeting, SheetMetal, Size
+from fabrication.section_types import Distance, Place, Section, Sheeting, SheetMetal, Size, Whole
 
 
 class PanelsSection(Section):
@@ -33,16 +33,32 @@ class SupportsSection(Section):
     ] = None
 
 
-class ConnectorSection(Section):
-    """Cylinders with one slot per plate."""
+class SlottedSection(Section):
+    """What all connectors have: slots for the plates in a round section."""
 
-    kind: Literal["cylinder"] = "cylinder"
     radius: Size
     height: Annotated[Size | None, Field(description="that of the plates")] = None
     depth: Annotated[Size | None, Field(description="half the radius")] = None
     clearance: Distance = 0.3
     web: Annotated[Size | None, Field(description="the plates' thickness")] = None
     material: SheetMetal = "S235"
+
+
+class CylinderSection(SlottedSection):
+    """Cylinders with one slot per plate."""
+
+    kind: Literal["cylinder"]
+
+
+class StarSection(SlottedSection):
+    """Star plates with one slot per plate, at even distances along the axis."""
+
+    kind: Literal["star"]
+    thickness: Size
+    layers: Annotated[Whole, Field(ge=2, le=100)] = 2
+
+
+ConnectorSection = Annotated[CylinderSection | StarSection, Field(discriminator="kind")]
 
 
 class FacadeSection(Section):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from fabrication.connector import ConnectorSpec
+from fabrication.connector_pieces import StarSpec
 from fabrication.errors import ProjectError
 from fabrication.panel import PanelSpec
-from fabrication.panel_sections import FacadeSection, PanelsSection
+from fabrication.panel_sections import FacadeSection, PanelsSection, SlottedSection, StarSection
 from fabrication.panel_structure import PanelSystem
 from fabrication.placing import placed
 from fabrication.sections import Project
@@ -55,6 +56,11 @@ def connector_spec(project: Project) -> ConnectorSpec | None:
     )
 
 
+def star_spec(section: SlottedSection | None) -> StarSpec | None:
+    """The star plates of ``[connector]``, where it asks for them."""
+    return StarSpec(section.thickness, section.layers) if isinstance(section, StarSection) else None
+
+
 def panel_system(project: Project, section: PanelsSection) -> PanelSystem:
     """Everything that is made on the net."""
     connector = project.connector
@@ -63,6 +69,7 @@ def panel_system(project: Project, section: PanelsSection) -> PanelSystem:
         plates=plate_section(project),
         connectors=connector_spec(project),
         connector_material=None if connector is None else material_of(connector.material),
+        star=star_spec(connector),
         tolerance=section.tolerance,
         turn_over=section.turn_over,
     )

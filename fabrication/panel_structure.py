@@ -11,9 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from fabrication.connector import Connector, ConnectorSpec, connector_findings, connectors
+from fabrication.connector_pieces import ConnectorPiece, StarSpec, connector_pieces
 from fabrication.finding import Finding
 from fabrication.grouping import Group, equal_groups
 from fabrication.panel import Panel, PanelSpec, panel_groups, panels
@@ -50,6 +49,7 @@ class PanelSystem:
     plates : how support plates are made; None for a net without.
     connectors : how connectors are made; None for a net without.
     connector_material : what those are made of.
+    star : star plates they consist of; None for cylinders.
     tolerance : parts whose corners agree this well are one group for the shop, mm.
     turn_over : whether a panel may be turned over to fit a group.
     """
@@ -58,6 +58,7 @@ class PanelSystem:
     plates: PlateSection | None = None
     connectors: ConnectorSpec | None = None
     connector_material: Material | None = None
+    star: StarSpec | None = None
     tolerance: float = 0.5
     turn_over: bool = False
 
@@ -89,9 +90,20 @@ class PanelStructure:
         return plate_groups(self.plates, self.system.tolerance)
 
     @cached_property
+    def pieces(self) -> tuple[ConnectorPiece, ...]:
+        """The cylinders or star plates."""
+        return connector_pieces(self.connectors, connector_middle(self.system), self.system.star)
+
+    @cached_property
     def connector_groups(self) -> tuple[Group, ...]:
-        """Connectors that are equal for the shop."""
-        return sections_alike(self.connectors, self.system.tolerance)
+        """Pieces of connectors that are equal for the shop."""
+        return sections_alike(self.pieces, self.system.tolerance)
+
+    def piece_mass(self, piece: ConnectorPiece) -> float:
+        """Mass of a cylinder or star plate, kg."""
+        material = self.system.connector_material
+        density = 0.0 if material is None else material.density
+        return piece.area * piece.height * density * 1e-9
 
     @cached_property
     def classical_plates(self) -> tuple[SupportPlate, ...]:
@@ -125,28 +137,13 @@ def panel_structure(mesh: PanelMesh, system: PanelSystem) -> PanelStructure:
     )
 
 
-def sections_alike(made: Sequence[Connector], tolerance: float) -> tuple[Group, ...]:
-    """Connectors whose sections agree within *tolerance* mm: "C1", "C2", ..."""
-    return equal_groups([c.section()[:, :2] for c in made], tolerance, prefix="C")
+def sections_alike(pieces: Sequence[ConnectorPiece], tolerance: float) -> tuple[Group, ...]:
+    """Pieces whose sections agree within *tolerance* mm: "C1", "C2", ..."""
+    sections = [piece.connector.section()[:, :2] for piece in pieces]
+    return equal_groups(sections, tolerance, prefix="C")
 
 
-def connector_span(system: PanelSystem) -> tuple[float, float]:
-    """Lower and upper end of the connectors along the axes, mm from the net."""
-    if system.plates is None or system.connectors is None:
-        return 0.0, 0.0
-    middle = (system.plates.below + system.plates.above) / 2.0
-    return middle - system.connectors.height / 2.0, middle + system.connectors.height / 2.0
-
-
-def connector_mass(connector: Connector, material: Material) -> float:
-    """Mass of a connector, kg."""
-    return section_area(connector) * connector.spec.height * material.density * 1e-9
-
-
-def section_area(connector: Connector) -> float:
-    """Area across the axis, mm2: the polygon of the corners and the segments under its arcs."""
-    x, y, bulge = connector.section().T
-    ahead_x, ahead_y = np.roll(x, -1), np.roll(y, -1)
-    polygon = float((x * ahead_y - y * ahead_x).sum()) / 2.0
-    sweep = 4.0 * np.arctan(bulge)
-    return polygon + float((connector.spec.radius**2 / 2.0 * (sweep - np.sin(sweep))).sum())
+def connector_middle(system: PanelSystem) -> float:
+    """Place of the connectors' middle along the axes, mm from the net."""
+    plates = system.plates
+    return 0.0 if plates is None else (plates.below + plates.above) / 2.0

@@ -194,11 +194,10 @@ def _sections() -> dict[str, type[Section]]:
         "own material": MaterialSection,
         "panels": PanelsSection,
         "supports": SupportsSection,
-        "connector": ConnectorSection,
         "facade": FacadeSection,
         "panel_sheet": SheetSection,
     }
-    for union in (SurfaceSection, PatchSection):
+    for union in (SurfaceSection, PatchSection, ConnectorSection):
         section: type[Section]
         for section in get_args(get_args(union)[0]):
             tag = section.model_fields.get("kind") or section.model_fields["layout"]

@@ -127,6 +127,14 @@ class Project(Section):
             return {"kind": "imported", **value}
         return value
 
+    @field_validator("connector", mode="before")
+    @classmethod
+    def _cylinder(cls, value: Any) -> Any:
+        """A connector that names no kind is a cylinder."""
+        if isinstance(value, dict) and "kind" not in value:
+            return {"kind": "cylinder", **value}
+        return value
+
     @field_validator("name")
     @classmethod
     def _printable(cls, name: str) -> str:

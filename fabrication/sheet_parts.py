@@ -1,4 +1,4 @@
-"""Panels and plates as they lie on a sheet: turned into their smallest box, with their marks.
+"""Panels, plates and stars as they lie on a sheet: in their smallest box, with their marks.
 
 A panel's outline lies around its middle; on a sheet it lies in (0, 0) .. (length, width). Along
 every side of a panel stands the mark of the neighbour, near every end of a plate that of its node.
@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fabrication.connector import connector_mark
-from fabrication.outlines import polygon_area
+from fabrication.connector_pieces import ConnectorPiece
+from fabrication.outlines import outline_area
 from fabrication.panel import Panel
 from fabrication.parts import Label
-from fabrication.support import SupportPlate
+from fabrication.support import SupportPlate, plate_mark
 from gridshell.arrays import Floats, frozen
 
 _LARGEST, _OWN, _ASIDE = 25.0, 0.14, 0.6
@@ -32,7 +33,8 @@ class SheetPiece:
     Parameters
     ----------
     mark : the part's.
-    outline : (k, 2) closed, counter-clockwise, within (0, 0) .. (length, width), mm.
+    outline : (k, 2), or (k, 3) with bulges, closed, counter-clockwise, within
+        (0, 0) .. (length, width), mm.
     labels : own mark and neighbours'.
     length, width, thickness : mm.
     """
@@ -47,7 +49,7 @@ class SheetPiece:
     @property
     def area(self) -> float:
         """Mm2."""
-        return polygon_area(self.outline)
+        return outline_area(self.outline)
 
 
 def panel_piece(panel: Panel) -> SheetPiece:
@@ -59,6 +61,25 @@ def plate_piece(plate: SupportPlate) -> SheetPiece:
     """The plate with its mark, and at either end the mark of the node; its upper edge is up."""
     first, second = (connector_mark(node) for node in plate.nodes)
     return _piece(plate.mark, plate.outline, (None, second, None, first), plate.thickness)
+
+
+def star_piece(piece: ConnectorPiece) -> SheetPiece:
+    """A star plate with its mark, and beside every slot the mark of the plate that goes in."""
+    connector, spec = piece.connector, piece.connector.spec
+    outline = np.array(connector.section())
+    outline[:, :2] += spec.radius
+    height = min(_LARGEST, 1.5 * spec.floor / (_LETTER * len(piece.mark)))
+    labels = [Label(piece.mark, spec.radius, spec.radius, height)]
+    along = (spec.floor + spec.radius) / 2.0
+    for arm in connector.arms:
+        text = plate_mark(arm.edge)
+        small = min(_ASIDE * height, 0.8 * spec.depth / (_LETTER * len(text)))
+        out = np.array([np.cos(arm.angle), np.sin(arm.angle)])
+        side = spec.slot_width / 2.0 + small
+        x, y = spec.radius + along * out + side * np.array([-out[1], out[0]])
+        labels.append(Label(text, float(x), float(y), small, _upright(out)))
+    across = 2.0 * spec.radius
+    return SheetPiece(piece.mark, frozen(outline), tuple(labels), across, across, piece.height)
 
 
 def _piece(

@@ -3,8 +3,8 @@
 Layers: CUT holds one closed outline per part and nothing else; MARK holds single-stroke text to
 engrave; TEXT is for people: the title above the sheet and the marks of each row left of it, outside
 the sheet so that a machine fed with every layer engraves nothing twice; SHEET is the outline of the
-raw sheet. Units are mm, the format is R2010, curves are lines. Part strip coordinates (0, 0) lie at
-the outline's first corner.
+raw sheet. Units are mm, the format is R2010; arcs are bulges, other curves lines. Part strip
+coordinates (0, 0) lie at the outline's first corner.
 """
 
 from __future__ import annotations
@@ -35,6 +35,9 @@ from gridshell.arrays import Floats
 CUT, MARK, TEXT, SHEET = "CUT", "MARK", "TEXT", "SHEET"
 _LAYERS = {CUT: 1, MARK: 5, TEXT: 8, SHEET: 9}
 _APPLICATION = "GRIDSHELL"
+
+_MANY = 12
+"""Marks of a row that are told one by one."""
 
 
 def write_dxf(
@@ -137,17 +140,29 @@ def _texts(space: Modelspace, nested: NestedSheet, title: str, below: str) -> li
         texts.append(under)
     for y, row in rows.items():
         width = row[0].part.width
-        marks = ", ".join(p.part.mark for p in sorted(row, key=lambda p: p.x))
+        marks = _listed([p.part.mark for p in sorted(row, key=lambda p: p.x)])
         beside = space.add_text(marks, height=min(height, width / 2.0), dxfattribs={"layer": TEXT})
         beside.set_placement((-height, y + width / 2.0), align=TextEntityAlignment.MIDDLE_RIGHT)
         texts.append(beside)
     return texts
 
 
+def _listed(marks: Sequence[str]) -> str:
+    """All *marks* of a row, or the first, the last and how many."""
+    if len(marks) <= _MANY:
+        return ", ".join(marks)
+    return f"{marks[0]}, {marks[1]} ... {marks[-1]} ({len(marks)})"
+
+
 def _draw(space: Modelspace, placement: Placement, font: _StrokeFont) -> None:
     part, offset = placement.part, np.array([placement.x, placement.y])
+    rows = np.array(part.outline)
+    rows[:, :2] += offset
     contour = space.add_lwpolyline(
-        (part.outline + offset).tolist(), close=True, dxfattribs={"layer": CUT}
+        rows.tolist(),
+        format="xy" if rows.shape[1] == 2 else "xyb",
+        close=True,
+        dxfattribs={"layer": CUT},
     )
     contour.set_xdata(_APPLICATION, [(1000, part.mark)])
     for label in part.labels:

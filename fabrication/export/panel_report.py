@@ -25,6 +25,7 @@ def write_panel_report(
     built: PanelStructure,
     panel_sheets: Sequence[NestedSheet],
     plate_sheets: Sequence[NestedSheet],
+    star_sheets: Sequence[NestedSheet] = (),
     pictures: Sequence[Mapping[str, Any]] = (),
 ) -> None:
     """Write the page.
@@ -48,7 +49,7 @@ def write_panel_report(
         pictures=pictures,
         figure=panel_figure(built),
         system=built.system,
-        rows=schedule_rows(built, panel_sheets, plate_sheets),
+        rows=schedule_rows(built, panel_sheets, plate_sheets, star_sheets),
         panel_groups=[
             {
                 "name": group.name,
@@ -60,9 +61,13 @@ def write_panel_report(
                 enumerate(built.panel_groups), key=lambda pair: -len(pair[1].members)
             )
         ],
-        sheets=[*_sheets(panel_sheets, "panels"), *_sheets(plate_sheets, "plates")],
+        sheets=[
+            *_sheets(panel_sheets, "panels"),
+            *_sheets(plate_sheets, "plates"),
+            *_sheets(star_sheets, "stars"),
+        ],
         size=np.ptp(built.mesh.vertices, axis=0) / 1e3,
-        swatches={"panel": "a", "plate": "b", "connector": "c"},
+        swatches={"panel": "a", "plate": "b", "connector": "c", "star plate": "c"},
         colours={number: css(COLOURS[kind]) for number, kind in enumerate(COLOURS, start=1)},
     )
     try:

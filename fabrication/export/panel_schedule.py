@@ -1,4 +1,4 @@
-"""The cut list of a planar net as CSV: one line per panel, plate and connector."""
+"""The cut list of a planar net as CSV: one line per panel, plate, and cylinder or star plate."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fabrication.errors import OutputError
 from fabrication.grouping import Group
 from fabrication.nesting import NestedSheet, SheetPart
 from fabrication.outlines import corner_angles
-from fabrication.panel_structure import PanelStructure, connector_mass
+from fabrication.panel_structure import PanelStructure
 from gridshell.arrays import Floats
 
 COLUMNS = (
@@ -29,7 +29,7 @@ class Row:
     Parameters
     ----------
     alike : parts in its group.
-    length, width, thickness : mm; of a cylinder its diameter twice and its height.
+    length, width, thickness : mm; of a connector its diameter twice and its height.
     angles : of the corners, or between a connector's slots, degrees.
     out_of_plane : of the net's corners, mm; None for a connector.
     mass : kg.
@@ -55,6 +55,7 @@ def write_panel_schedule(
     built: PanelStructure,
     panel_sheets: Sequence[NestedSheet],
     plate_sheets: Sequence[NestedSheet],
+    star_sheets: Sequence[NestedSheet] = (),
 ) -> None:
     """Write the cut list; it opens in any spreadsheet.
 
@@ -63,7 +64,7 @@ def write_panel_schedule(
     OutputError
         When the file cannot be written.
     """
-    rows = [_cells(row) for row in schedule_rows(built, panel_sheets, plate_sheets)]
+    rows = [_cells(row) for row in schedule_rows(built, panel_sheets, plate_sheets, star_sheets)]
     try:
         with Path(path).open("w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows([COLUMNS, *rows])
@@ -77,12 +78,13 @@ def schedule_rows(
     built: PanelStructure,
     panel_sheets: Sequence[NestedSheet],
     plate_sheets: Sequence[NestedSheet],
+    star_sheets: Sequence[NestedSheet] = (),
 ) -> list[Row]:
     """Panels, then plates, then connectors, each in the order of their numbers."""
     return [
         *_panels(built, panel_sheets),
         *_plates(built, plate_sheets),
-        *_connectors(built),
+        *_connectors(built, star_sheets),
     ]
 
 
@@ -130,27 +132,28 @@ def _plates(built: PanelStructure, sheets: Sequence[NestedSheet]) -> Iterator[Ro
         )
 
 
-def _connectors(built: PanelStructure) -> Iterator[Row]:
+def _connectors(built: PanelStructure, sheets: Sequence[NestedSheet]) -> Iterator[Row]:
     material = built.system.connector_material
     if material is None:
         return
-    groups = _groups(built.connector_groups)
-    for index, connector in enumerate(built.connectors):
-        across = 2.0 * connector.spec.radius
+    lies, groups = _lying(sheets, "stars"), _groups(built.connector_groups)
+    kind = "connector" if built.system.star is None else "star plate"
+    for index, piece in enumerate(built.pieces):
+        across = 2.0 * piece.connector.spec.radius
         group, alike = groups[index]
         yield Row(
-            mark=connector.mark,
-            kind="connector",
+            mark=piece.mark,
+            kind=kind,
             group=group,
             alike=alike,
             length=across,
             width=across,
-            thickness=connector.spec.height,
+            thickness=piece.height,
             material=material.name,
-            angles=_degrees(connector.between),
+            angles=_degrees(piece.connector.between),
             out_of_plane=None,
-            mass=connector_mass(connector, material),
-            sheet="",
+            mass=built.piece_mass(piece),
+            sheet=lies[piece.mark][1] if piece.mark in lies else "",
         )
 
 

@@ -13,7 +13,7 @@ from fabrication.colours import css
 from fabrication.export.shell import LIGHT, axes_figure, camera, on_screen, xyz
 from fabrication.export.words import fixed, number
 from fabrication.grouping import Group
-from fabrication.panel_structure import COLOURS, PanelStructure, connector_span
+from fabrication.panel_structure import COLOURS, PanelStructure
 from gridshell.arrays import Floats, Points
 
 _ALONE = (0.74, 0.80, 0.84)
@@ -84,18 +84,18 @@ def _plates(built: PanelStructure, centre: Floats) -> Any:
 
 
 def _connectors(built: PanelStructure, centre: Floats) -> Any:
-    low, high = connector_span(built.system)
     turn = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
     polygons, texts = [], []
-    for connector in built.connectors:
+    for piece in built.pieces:
+        connector, high = piece.connector, piece.height
         ring = connector.spec.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        base, up = connector.frame.place(ring), connector.frame.normal
+        base, up = piece.frame.place(ring), piece.frame.normal
         around = np.roll(np.arange(_SIDES), -1)
-        sides = np.stack([base + low * up, base + high * up], axis=1)
+        sides = np.stack([base, base + high * up], axis=1)
         polygons += [np.concatenate([sides[k], sides[around[k]][::-1]]) for k in range(_SIDES)]
         polygons.append(base + high * up)
         between = " / ".join(fixed(a, 1) for a in np.degrees(connector.between).tolist())
-        texts += [f"<b>{connector.mark}</b><br>slots {between}° apart"] * (_SIDES + 1)
+        texts += [f"<b>{piece.mark}</b><br>slots {between}° apart"] * (_SIDES + 1)
     return _fans(polygons, texts, centre, name="Connectors", colours=[css(COLOURS["connectors"])])
 
 

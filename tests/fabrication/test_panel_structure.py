@@ -1,16 +1,14 @@
 import numpy as np
 import pytest
 from shapely.affinity import rotate
-from shapely.geometry import Point, Polygon, box
+from shapely.geometry import Point, box
 from shapely.ops import unary_union
 
-import fabrication as fab
+from fabrication.outlines import outline_area
 from fabrication.panel_structure import (
     PanelSystem,
-    connector_mass,
-    connector_span,
+    connector_middle,
     panel_structure,
-    section_area,
 )
 
 
@@ -25,7 +23,7 @@ def test_a_net_of_panels_alone_has_nothing_else(tower):
     built = panel_structure(tower.mesh, PanelSystem(panels=tower.system.panels))
     assert built.plates == built.connectors == built.classical_plates == ()
     assert built.findings() == []
-    assert connector_span(built.system) == (0.0, 0.0)
+    assert built.pieces == ()
 
 
 def test_parts_of_a_storey_are_equal(tower):
@@ -35,7 +33,11 @@ def test_parts_of_a_storey_are_equal(tower):
 
 
 def test_connectors_stand_half_way_up_the_plates(tower):
-    assert connector_span(tower.system) == (-110.0, -20.0)
+    assert connector_middle(tower.system) == -65.0
+    (piece,) = (p for p in tower.pieces if p.mark == "N3")
+    below = tower.mesh.vertices[2] - 110.0 * tower.mesh.axes[2]
+    assert piece.frame.origin == pytest.approx(below)
+    assert piece.height == 90.0
 
 
 def test_the_section_s_area_is_that_of_the_disc_without_its_slots(tower):
@@ -47,14 +49,15 @@ def test_the_section_s_area_is_that_of_the_disc_without_its_slots(tower):
         rotate(box(spec.floor, -half, 99.0, half), np.degrees(a), origin=(0, 0))
         for a in connector.slot_angles
     ]
-    assert section_area(connector) == pytest.approx((disc - unary_union(slots)).area, rel=1e-5)
-    assert isinstance(disc, Polygon)
+    assert outline_area(connector.section()) == pytest.approx(
+        (disc - unary_union(slots)).area, rel=1e-5
+    )
 
 
 def test_a_connector_weighs_its_volume(tower):
-    connector = tower.connectors[0]
-    expected = section_area(connector) * 90.0 * 7900e-9
-    assert connector_mass(connector, fab.STAINLESS) == pytest.approx(expected)
+    piece = tower.pieces[0]
+    expected = outline_area(piece.connector.section()) * 90.0 * 7900e-9
+    assert tower.piece_mass(piece) == pytest.approx(expected)
 
 
 def test_plates_at_90_degrees_are_flat_and_at_70_they_are_findings(tower, leaning):

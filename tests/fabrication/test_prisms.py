@@ -3,7 +3,7 @@ import pytest
 
 from fabrication.bodies import Shape, structure_bodies
 from fabrication.errors import KernelError
-from fabrication.panel_structure import section_area
+from fabrication.outlines import outline_area
 from fabrication.prisms import prism
 from fabrication.solid import volume
 
@@ -21,7 +21,7 @@ def test_panels_and_plates_have_the_volume_of_their_outlines(leaning):
 def test_connectors_have_the_volume_of_their_section(tower):
     bodies = structure_bodies(tower)
     for body, connector in list(zip(bodies.kinds[2].bodies, tower.connectors, strict=True))[:4]:
-        wanted = section_area(connector) * 90.0
+        wanted = outline_area(connector.section()) * 90.0
         assert volume(prism(bodies.shapes[body.shape])) == pytest.approx(wanted, rel=1e-6)
 
 

@@ -5,7 +5,7 @@ from fabrication.bodies import structure_bodies
 from fabrication.errors import OutputError
 from fabrication.export.step_bodies import write_bodies
 from fabrication.export.step_prism_reader import read_prisms
-from fabrication.panel_structure import section_area
+from fabrication.outlines import outline_area
 
 pytestmark = pytest.mark.xdist_group("kernel")
 
@@ -22,7 +22,7 @@ def test_another_reader_finds_every_solid_valid_and_of_the_right_volume(imported
     assert all(solid.is_valid for solid in solids)
     densities = {"P": 2500e-9, "S": 7850e-9}
     wanted = [p.mass / densities[p.mark[0]] for p in parts]
-    wanted += [section_area(c) * c.spec.height for c in leaning.connectors]
+    wanted += [outline_area(c.section()) * c.spec.height for c in leaning.connectors]
     found = sorted(solid.volume for solid in solids)
     assert found == pytest.approx(sorted(wanted), rel=1e-5)
 
