@@ -4,18 +4,23 @@ from .beam_layout import Beam as Beam
 from .beam_layout import BeamEnd as BeamEnd
 from .beam_layout import BeamSection as BeamSection
 from .beam_layout import beams as beams
+from .bodies import Bodies as Bodies
+from .bodies import structure_bodies as structure_bodies
 from .checks import check as check
 from .connector import Arm as Arm
 from .connector import Connector as Connector
 from .connector import ConnectorSpec as ConnectorSpec
 from .connector import connector_findings as connector_findings
 from .connector import connectors as connectors
+from .connector_pieces import StarSpec as StarSpec
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.report import write_report as write_report
 from .export.schedule import write_schedule as write_schedule
 from .export.step import assembly as assembly
 from .export.step import write_step as write_step
+from .export.step_bodies import write_bodies as write_bodies
+from .export.step_prism_reader import read_prisms as read_prisms
 from .export.step_reader import read_step as read_step
 from .facade import DiagonalRule as DiagonalRule
 from .facade import Facade as Facade
@@ -41,11 +46,19 @@ from .panel import Panel as Panel
 from .panel import PanelSpec as PanelSpec
 from .panel import panel_groups as panel_groups
 from .panel import panels as panels
+from .panel_loop import PanelClosure as PanelClosure
+from .panel_loop import panel_closure as panel_closure
+from .panel_structure import PanelStructure as PanelStructure
+from .panel_structure import PanelSystem as PanelSystem
+from .panel_structure import panelled as panelled
 from .parts import FlatPart as FlatPart
 from .parts import flat_parts as flat_parts
 from .project import project_text as project_text
 from .project import read_project as read_project
 from .sections import Project as Project
+from .sheet_parts import panel_piece as panel_piece
+from .sheet_parts import plate_piece as plate_piece
+from .sheet_parts import star_piece as star_piece
 from .solid import solids as solids
 from .stock import (
     BIRCH_PLY as BIRCH_PLY,

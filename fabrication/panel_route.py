@@ -19,7 +19,7 @@ from fabrication.panel_sections import PanelsSection
 from fabrication.panel_settings import panel_system
 from fabrication.panel_structure import (
     PanelStructure,
-    panel_structure,
+    panelled,
 )
 from fabrication.routes import (
     CLOSURE_LIMIT,
@@ -73,7 +73,7 @@ class PanelRoute:
         project = self.project
         with clock.stage("structure"):
             mesh = gs.skin(control, _SKINS[project.net.skin])
-            built = panel_structure(mesh, panel_system(project, self.panels))
+            built = panelled(mesh, panel_system(project, self.panels))
             findings = built.findings()
         with clock.stage("parts"):
             stock = sheet_of(project.panel_sheet or project.sheet)

@@ -120,7 +120,7 @@ class PanelStructure:
         return [*twisted, *connector_findings(self.connectors)]
 
 
-def panel_structure(mesh: PanelMesh, system: PanelSystem) -> PanelStructure:
+def panelled(mesh: PanelMesh, system: PanelSystem) -> PanelStructure:
     """Build *system* on *mesh*.
 
     Raises

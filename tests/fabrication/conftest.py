@@ -21,7 +21,7 @@ import gridshell as gs
 from fabrication import kernel_job
 from fabrication.bodies import structure_bodies
 from fabrication.cut import Slot, outline
-from fabrication.panel_structure import PanelStructure, PanelSystem, panel_structure
+from fabrication.panel_structure import PanelStructure, PanelSystem, panelled
 from fabrication.unroll import Development
 from gridshell.mesh import grid_quads
 
@@ -249,15 +249,15 @@ SYSTEM = PanelSystem(
 )
 
 
-def panelled(control: gs.ControlMesh, system: PanelSystem = SYSTEM) -> PanelStructure:
-    return panel_structure(gs.skin(control, gs.Skin.D1), system)
+def on_first_skin(control: gs.ControlMesh, system: PanelSystem = SYSTEM) -> PanelStructure:
+    return panelled(gs.skin(control, gs.Skin.D1), system)
 
 
 @pytest.fixture(scope="session")
 def tower() -> PanelStructure:
     """Three equal storeys' worth of parts around a hyperboloid, at 90 degrees."""
     patch = gs.ConjugatePatch(v=(-0.4, 0.5), panels=(8, 3))
-    return panelled(gs.control_patch(gs.Hyperboloid(2000.0, 3000.0), patch))
+    return on_first_skin(gs.control_patch(gs.Hyperboloid(2000.0, 3000.0), patch))
 
 
 @pytest.fixture(scope="session")
@@ -266,7 +266,7 @@ def leaning() -> PanelStructure:
     patch = gs.ConjugatePatch(u=(-0.3, 0.4), v=(-0.35, 0.3), panels=(4, 3))
     start = gs.control_patch(gs.Enneper(5000.0), patch)
     recipe = gs.pq_net(angle=radians(70.0), conditions=(gs.FlatRim(),))
-    return panelled(gs.optimize(start, recipe, anchor=gs.Free()).require().control)
+    return on_first_skin(gs.optimize(start, recipe, anchor=gs.Free()).require().control)
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,7 @@ from fabrication.outlines import outline_area
 from fabrication.panel_structure import (
     PanelSystem,
     connector_middle,
-    panel_structure,
+    panelled,
 )
 
 
@@ -20,7 +20,7 @@ def test_there_is_a_part_for_every_face_edge_and_node(tower):
 
 
 def test_a_net_of_panels_alone_has_nothing_else(tower):
-    built = panel_structure(tower.mesh, PanelSystem(panels=tower.system.panels))
+    built = panelled(tower.mesh, PanelSystem(panels=tower.system.panels))
     assert built.plates == built.connectors == built.classical_plates == ()
     assert built.findings() == []
     assert built.pieces == ()
