@@ -57,13 +57,14 @@ class PanelRoute:
         return ("sheets/panels-01.dxf", *plates)
 
     def recipe(self) -> gs.NetRecipe:
-        """A net of planar quads."""
+        """A net of planar quads; a rim that is free lies flat for the plates there, too."""
         net = self.project.net
+        free = net.anchor == "free" and self.project.supports is not None
         return gs.pq_net(
             angle=None if net.angle is None else radians(net.angle),
             rhombus=net.rhombus,
             square=net.square,
-            conditions=(gs.FlatRim(),),
+            conditions=(gs.FlatRim(),) if free else (),
             steps=net.steps,
             tolerance=net.tolerance,
         )

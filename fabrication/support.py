@@ -246,6 +246,7 @@ def _twisted(plate: SupportPlate, section: PlateSection) -> Iterator[Finding]:
     bears = stress <= strength
     mild = Severity.INFO if stress <= strength / 2.0 else Severity.WARNING
     advice = "A" if bears else "Use a thinner plate, or a"
+    rim = " At the rim the net must be free to move, too." if plate.partial else ""
     yield Finding(
         "support-twist",
         mild if bears else Severity.ERROR,
@@ -258,5 +259,5 @@ def _twisted(plate: SupportPlate, section: PlateSection) -> Iterator[Finding]:
         f"it in takes {cost.moment / 1000.0:.3g} N m at either end, {stress:.3g} N/mm2 and "
         f"{cost.edge_strain:.1e} of edge strain; {section.material.name} "
         f"{'bears' if bears else 'does not bear'} that ({strength:g} N/mm2). "
-        f"{advice} node angle of 90 degrees makes plates flat.",
+        f"{advice} node angle of 90 degrees makes plates flat.{rim}",
     )

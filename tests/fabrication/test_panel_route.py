@@ -12,6 +12,7 @@ import fabrication as fab
 import gridshell as gs
 from fabrication import routes
 from fabrication.errors import KernelError, StockError
+from fabrication.panel_route import PanelRoute
 
 pytestmark = [pytest.mark.xdist_group("kernel"), pytest.mark.usefixtures("kernel_here")]
 
@@ -265,3 +266,29 @@ def test_the_command_ends_with_2_and_leaves_nothing(tmp_path):
     assert "nothing sound left" in result.stderr
     assert "Traceback" not in result.stderr
     assert names(tmp_path) == {"p.toml"}
+
+
+# ---- the recipe -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("anchor", "sections", "flat"),
+    [
+        ("free", {}, True),
+        ("free", BARE, False),
+        ("boundary-glide", {}, False),
+        ("boundary-pinned", {}, False),
+    ],
+)
+def test_the_rim_is_flat_where_it_is_free_and_carries_plates(anchor, sections, flat):
+    content = project(net={**SMALL["net"], "anchor": anchor}, **sections)
+    recipe = PanelRoute(content, content.panels).recipe()
+    assert [type(c) for c in recipe.conditions] == ([gs.FlatRim] if flat else [])
+
+
+def test_the_recipe_has_the_project_s_conditions_steps_and_tolerance():
+    net = {"kind": "planar", "anchor": "free", "square": True, "steps": 12, "tolerance": 1e-7}
+    content = project(net=net)
+    recipe = PanelRoute(content, content.panels).recipe()
+    assert (recipe.angle, recipe.rhombus) == (pytest.approx(np.pi / 2.0), True)
+    assert (recipe.stop.steps, recipe.stop.tolerance) == (12, 1e-7)
