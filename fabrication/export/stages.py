@@ -18,6 +18,7 @@ import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
 from fabrication.export.painter import Dots, Faces, Layer, Lines, View, bounds, hexadecimal, svg
+from fabrication.export.words import plural
 from gridshell.arrays import Floats, Indices
 from gridshell.surface import TriangleMesh
 
@@ -222,13 +223,13 @@ def _alignment(made: gs.Quadrangulation, skin: _Skin) -> Stage:
         "e",
         "Alignment",
         f"Edges are off the directions by {stray.mean:.2f}° on average, {stray.p95:.2f}° for 95 of "
-        f"100, {stray.max:.1f}° at most; {len(spikes)} singular points"
+        f"100, {stray.max:.1f}° at most; {plural(len(spikes), 'singular point')}"
         f"{infeasible if report.infeasible_area else ''}.",
         tuple(layers),
         (
-            *((_css(c), f"{d:g}°") for c, d in zip(_HEAT, np.linspace(0, HOTTEST, 4), strict=True)),
+            *_heat_legend(),
             (_css(_GREY), "beyond the rim"),
-            (_css(_INK), "singular point"),
+            *(((_css(_INK), "singular point"),) if len(spikes) else ()),
             *(((_css(_VIOLET), "no such pair"),) if report.infeasible_area else ()),
         ),
     )
@@ -276,6 +277,12 @@ def _apart(points: Floats, step: float) -> Indices:
             chosen.append(i)
             free[tree.query_ball_point(points[i], step)] = False
     return np.array(chosen, dtype=np.int64)
+
+
+def _heat_legend() -> list[tuple[str, str]]:
+    degrees = [f"{d:.2g}°" for d in np.linspace(0.0, HOTTEST, len(_HEAT))]
+    degrees[-1] += " and more"
+    return [(_css(colour), text) for colour, text in zip(_HEAT, degrees, strict=True)]
 
 
 def _edge_errors(made: gs.Quadrangulation, middles: Floats) -> Floats:
