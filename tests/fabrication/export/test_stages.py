@@ -155,3 +155,12 @@ def test_large_surfaces_are_drawn_with_few_triangles(made, monkeypatch):
     monkeypatch.setattr(module, "_TRIANGLES", 400)
     (faces,) = layer(stages(made)[0], Faces)
     assert len(faces.corners) < 600
+
+
+def test_fine_meshes_are_drawn_by_their_edges(made, monkeypatch):
+    monkeypatch.setattr(module, "_MOST_FACES", 40)
+    found = {stage.letter: stage for stage in stages(made)}
+    assert layer(found["c"], Dots) == []
+    assert [len(one.ends) for one in layer(found["c"], Lines)] == [len(made.mesh.edges)]
+    (lines,) = layer(found["d"], Lines)
+    assert len(lines.ends) == len(made.control().mesh.edges)
