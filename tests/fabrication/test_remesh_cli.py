@@ -307,6 +307,16 @@ def test_a_report_that_cannot_be_written_leaves_no_mesh(command, tmp_path, monke
     assert [path.name for path in tmp_path.iterdir()] == ["s.obj"]
 
 
+def test_an_interrupt_writes_nothing(command, tmp_path, monkeypatch):
+    def stop(*args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fabrication.remesh_job.remesh", stop)
+    code, _, err = command(*USUAL, "-o", "m.obj", "--pictures", "p")
+    assert (code, err) == (130, "gridshell: Interrupted. Nothing was written.\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["s.obj"]
+
+
 # ---- surfaces that cannot be used -------------------------------------------------------------
 
 CASES = {}
