@@ -1,6 +1,15 @@
 """Public names of fabrication, each by the module that holds it."""
 
+from .beam_layout import Beam as Beam
+from .beam_layout import BeamEnd as BeamEnd
+from .beam_layout import BeamSection as BeamSection
+from .beam_layout import beams as beams
 from .checks import check as check
+from .connector import Arm as Arm
+from .connector import Connector as Connector
+from .connector import ConnectorSpec as ConnectorSpec
+from .connector import connector_findings as connector_findings
+from .connector import connectors as connectors
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.report import write_report as write_report
@@ -8,10 +17,15 @@ from .export.schedule import write_schedule as write_schedule
 from .export.step import assembly as assembly
 from .export.step import write_step as write_step
 from .export.step_reader import read_step as read_step
+from .facade import DiagonalRule as DiagonalRule
+from .facade import Facade as Facade
+from .facade import triangulated_facade as triangulated_facade
 from .finding import Finding as Finding
 from .finding import Severity as Severity
 from .fitting import Fit as Fit
 from .fitting import fit as fit
+from .grouping import Group as Group
+from .grouping import Member as Member
 from .joints import JOINTS as JOINTS
 from .joints import Joint as Joint
 from .joints import SlotJoint as SlotJoint
@@ -21,7 +35,12 @@ from .loop import closure as closure
 from .nesting import NestedSheet as NestedSheet
 from .nesting import nest as nest
 from .node import Node as Node
+from .outlines import Frame as Frame
 from .package import run as run
+from .panel import Panel as Panel
+from .panel import PanelSpec as PanelSpec
+from .panel import panel_groups as panel_groups
+from .panel import panels as panels
 from .parts import FlatPart as FlatPart
 from .parts import flat_parts as flat_parts
 from .project import project_text as project_text
@@ -31,6 +50,7 @@ from .solid import solids as solids
 from .stock import (
     BIRCH_PLY as BIRCH_PLY,
 )
+from .stock import GLASS as GLASS
 from .stock import (
     S235 as S235,
 )
@@ -48,5 +68,12 @@ from .stock import (
 )
 from .structures import Structure as Structure
 from .structures import structure as structure
+from .support import PlateSection as PlateSection
+from .support import SupportPlate as SupportPlate
+from .support import TwistCost as TwistCost
+from .support import plate_groups as plate_groups
+from .support import support_findings as support_findings
+from .support import supports as supports
+from .support import twist_cost as twist_cost
 from .unroll import Development as Development
 from .unroll import unroll as unroll

@@ -1,20 +1,54 @@
-"""Parts on sheets: strips in rows, longest first into the first row that still has room."""
+"""Parts on sheets: in rows, widest and longest first, into the first row that still has room."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from fabrication.errors import StockError
-from fabrication.parts import FlatPart
+from fabrication.parts import Label
 from fabrication.stock import Sheet
+from gridshell.arrays import Floats
+
+
+class SheetPart(Protocol):
+    """Anything cut from a sheet: a strip, a panel, a plate."""
+
+    @property
+    def mark(self) -> str:
+        """Name, engraved and listed."""
+
+    @property
+    def outline(self) -> Floats:
+        """(k, 2) closed, counter-clockwise, within (0, 0) .. (length, width), mm."""
+
+    @property
+    def labels(self) -> tuple[Label, ...]:
+        """Texts to engrave."""
+
+    @property
+    def length(self) -> float:
+        """Extent along the sheet, mm."""
+
+    @property
+    def width(self) -> float:
+        """Extent across the sheet, mm."""
+
+    @property
+    def thickness(self) -> float:
+        """Of the sheet it is cut from, mm."""
+
+    @property
+    def area(self) -> float:
+        """Net area, mm2."""
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """A part on a sheet; (x, y) is where its strip coordinates (0, 0) lie, mm."""
+    """A part on a sheet; (x, y) is where its own coordinates (0, 0) lie, mm."""
 
-    part: FlatPart
+    part: SheetPart
     x: float
     y: float
 
@@ -34,8 +68,20 @@ class NestedSheet:
         return area / (self.sheet.length * self.sheet.width)
 
 
-def nest(parts: Sequence[FlatPart], sheet: Sheet) -> tuple[NestedSheet, ...]:
-    """Place all *parts* on as few sheets as first-fit decreasing finds.
+_ROUNDING = 1e-9
+
+
+@dataclass(eq=False)
+class _Row:
+    """Parts beside each other, as high as the first of them."""
+
+    height: float
+    free: float
+    parts: list[SheetPart]
+
+
+def nest(parts: Sequence[SheetPart], sheet: Sheet) -> tuple[NestedSheet, ...]:
+    """Place all *parts* on as few sheets as first-fit decreasing finds, first in rows.
 
     Raises
     ------
@@ -44,48 +90,51 @@ def nest(parts: Sequence[FlatPart], sheet: Sheet) -> tuple[NestedSheet, ...]:
     """
     for part in sorted(parts, key=lambda p: -p.length):
         _check_fit(part, sheet)
-    rows = _rows(parts, sheet)
-    pitch = max((part.width for part in parts), default=0.0) + sheet.gap
-    per_sheet = max(1, int((sheet.width - 2.0 * sheet.margin + sheet.gap) // pitch)) if parts else 1
-    sheets = []
-    for number, first in enumerate(range(0, len(rows), per_sheet), start=1):
-        placements = []
-        for i, row in enumerate(rows[first : first + per_sheet]):
-            x = sheet.margin
-            for part in row:
-                placements.append(Placement(part, x, sheet.margin + i * pitch))
-                x += part.length + sheet.gap
-        sheets.append(NestedSheet(number, sheet, tuple(placements)))
-    return tuple(sheets)
+    room = sheet.width - 2.0 * sheet.margin
+    heights: list[float] = []
+    filled: list[list[Placement]] = []
+    for row in _rows(parts, sheet):
+        number = next((i for i, y in enumerate(heights) if y + row.height <= room + _ROUNDING), -1)
+        if number < 0:
+            number = len(heights)
+            heights.append(0.0)
+            filled.append([])
+        x, y = sheet.margin, sheet.margin + heights[number]
+        for part in row.parts:
+            filled[number].append(Placement(part, x, y))
+            x += part.length + sheet.gap
+        heights[number] += row.height + sheet.gap
+    return tuple(
+        NestedSheet(number, sheet, tuple(placements))
+        for number, placements in enumerate(filled, start=1)
+    )
 
 
-def _rows(parts: Sequence[FlatPart], sheet: Sheet) -> list[list[FlatPart]]:
+def _rows(parts: Sequence[SheetPart], sheet: Sheet) -> list[_Row]:
     room = sheet.length - 2.0 * sheet.margin
-    rows: list[list[FlatPart]] = []
-    left: list[float] = []
-    for part in sorted(parts, key=lambda p: (-p.length, p.mark)):
-        row = next((i for i, free in enumerate(left) if free >= part.length), None)
+    rows: list[_Row] = []
+    for part in sorted(parts, key=lambda p: (-p.width, -p.length, p.mark)):
+        row = next((row for row in rows if row.free >= part.length), None)
         if row is None:
-            rows.append([])
-            left.append(room)
-            row = len(rows) - 1
-        rows[row].append(part)
-        left[row] -= part.length + sheet.gap
+            row = _Row(part.width, room, [])
+            rows.append(row)
+        row.parts.append(part)
+        row.free -= part.length + sheet.gap
     return rows
 
 
-def _check_fit(part: FlatPart, sheet: Sheet) -> None:
+def _check_fit(part: SheetPart, sheet: Sheet) -> None:
     for what, size, room in (
         ("long", part.length, sheet.length - 2.0 * sheet.margin),
         ("wide", part.width, sheet.width - 2.0 * sheet.margin),
     ):
         if size > room:
             raise StockError(
-                f"A lamella is too {what} for the stock",
+                f"A part is too {what} for the stock",
                 where=part.mark,
                 value=f"{size:.1f} mm",
                 limit=f"{room:.1f} mm between the sheet's margins",
-                advice="a longer sheet or coil, a smaller margin, or shorter lamellas"
+                advice="a longer sheet or coil, a smaller margin, or shorter parts"
                 if what == "long"
-                else "a wider sheet, or a narrower profile",
+                else "a wider sheet, or narrower parts",
             )

@@ -57,6 +57,9 @@ STAINLESS = Material("stainless", modulus=200_000.0, strength=220.0, density=790
 BIRCH_PLY = Material("birch-ply", modulus=10_000.0, strength=40.0, density=680.0)
 """Birch plywood along the grain, rounded down from manufacturers' bending values."""
 
+GLASS = Material("glass", modulus=70_000.0, strength=45.0, density=2500.0)
+"""Float glass, EN 572-1: characteristic bending strength 45 N/mm2, before any safety factor."""
+
 MATERIALS = {material.name: material for material in (S235, STAINLESS, BIRCH_PLY)}
 
 

@@ -113,18 +113,21 @@ from .mesh import (
 from .mesh import (
     DiagonalMesh as DiagonalMesh,
 )
+from .mesh import PanelMesh as PanelMesh
 from .mesh import (
     Polyline as Polyline,
 )
 from .mesh import (
     QuadMesh as QuadMesh,
 )
+from .mesh import Skin as Skin
 from .mesh import (
     Stars as Stars,
 )
 from .mesh import (
     as_control_mesh as as_control_mesh,
 )
+from .mesh import averaged_normals as averaged_normals
 from .mesh import (
     checkerboard as checkerboard,
 )
@@ -141,12 +144,15 @@ from .mesh import (
     edge_stars as edge_stars,
 )
 from .mesh import main_piece as main_piece
+from .mesh import node_axes as node_axes
 from .mesh import (
     oriented as oriented,
 )
+from .mesh import panel_mesh as panel_mesh
 from .mesh import (
     polylines as polylines,
 )
+from .mesh import skin as skin
 from .mesh import (
     two_colouring as two_colouring,
 )
@@ -155,6 +161,9 @@ from .net_report import history_report as history_report
 from .net_report import net_report as net_report
 from .optimization import OptimizedNet as OptimizedNet
 from .optimization import optimize as optimize
+from .panel_families import PanelFamilies as PanelFamilies
+from .panel_families import cluster_panels as cluster_panels
+from .panel_families import panel_curvatures as panel_curvatures
 from .patch import (
     AsymptoticPatch as AsymptoticPatch,
 )

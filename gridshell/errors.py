@@ -16,6 +16,7 @@
     │   │   ├── AngleInfeasibleError    no conjugate directions with the angle asked for
     │   │   ├── PoleSingularityError    lines that all run into, or around, one point
     │   │   ├── TooManySingularitiesError   noise, or quads larger than the shape
+    │   │   ├── TargetTooCoarseError    quads larger than the surface, or than one of its necks
     │   │   ├── DegenerateSurfaceError  triangles without area, vertices that are not numbers
     │   │   ├── DisconnectedError       a surface in several pieces
     │   │   ├── SelfIntersectionError   a surface that cuts through itself
@@ -127,6 +128,10 @@ class PoleSingularityError(SurfaceError):
 
 class TooManySingularitiesError(SurfaceError):
     """Singular points too close together for the size of the quads: noise, or quads too large."""
+
+
+class TargetTooCoarseError(SurfaceError):
+    """Quads too large for the surface, or to go around one of its holes or necks."""
 
 
 class DegenerateSurfaceError(SurfaceError):

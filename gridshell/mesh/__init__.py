@@ -10,19 +10,24 @@ from gridshell.mesh.control_mesh import (
 )
 from gridshell.mesh.diagonals import DiagonalMesh, diagonal_meshes
 from gridshell.mesh.grid import grid_quads
+from gridshell.mesh.panel_mesh import PanelMesh, averaged_normals, panel_mesh
 from gridshell.mesh.pieces import main_piece
 from gridshell.mesh.polylines import Polyline, polylines
 from gridshell.mesh.quad_mesh import QuadMesh, oriented, position
+from gridshell.mesh.skins import Skin, node_axes, skin
 from gridshell.mesh.stars import Stars, diagonal_stars, edge_stars
 
 __all__ = [
     "CheckerboardPattern",
     "ControlMesh",
     "DiagonalMesh",
+    "PanelMesh",
     "Polyline",
     "QuadMesh",
+    "Skin",
     "Stars",
     "as_control_mesh",
+    "averaged_normals",
     "checkerboard",
     "control_mesh",
     "corner_parity",
@@ -31,9 +36,12 @@ __all__ = [
     "edge_stars",
     "grid_quads",
     "main_piece",
+    "node_axes",
     "oriented",
+    "panel_mesh",
     "polylines",
     "position",
+    "skin",
     "two_colouring",
     "without_families",
 ]

@@ -61,8 +61,9 @@ class ControlMesh:
 def as_control_mesh(mesh: QuadMesh) -> ControlMesh:
     """Take *mesh* itself as the control mesh and label its diagonals.
 
-    D1 (colour 0) is the diagonal mesh with fewer loose ends (vertices that only one diagonal
-    reaches); where both have the same number, the one of the smallest vertex.
+    D1 (colour 0) is the diagonal mesh that holds the singular vertices, so that its faces are
+    quads; where neither or both hold some, the one with fewer loose ends (vertices that only one
+    diagonal reaches), and where both have the same number, the one of the smallest vertex.
 
     Raises
     ------
@@ -73,10 +74,19 @@ def as_control_mesh(mesh: QuadMesh) -> ControlMesh:
     corners = (np.arange(4)[None, :] + shift[:, None]) % 4
     rolled = QuadMesh(mesh.vertices, np.take_along_axis(mesh.quads, corners, axis=1))
     colour = two_colouring(rolled)
-    loose = rolled.valence == 1
-    if np.count_nonzero(loose & (colour == 0)) > np.count_nonzero(loose & (colour == 1)):
+    if _second_first(rolled, colour):
         colour = np.where(colour < 0, -1, 1 - colour)
     return ControlMesh(rolled, colour)
+
+
+def _second_first(mesh: QuadMesh, colour: Indices) -> bool:
+    """Whether colour 1 is that of D1."""
+    singular = ~mesh.on_boundary & (mesh.valence > 0) & (mesh.valence != 4)
+    held = [bool((singular & (colour == c)).any()) for c in (0, 1)]
+    if held[0] != held[1]:
+        return held[1]
+    loose = [int(np.count_nonzero((mesh.valence == 1) & (colour == c))) for c in (0, 1)]
+    return loose[0] > loose[1]
 
 
 def without_families(mesh: QuadMesh) -> ControlMesh:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gridshell.arrays import Floats, Indices
+from gridshell.errors import SolveError
 
 MOST_NODES = 200_000
 """Branches looked at before the search settles for the best one found."""
@@ -42,12 +43,18 @@ def closest_lattice_point(form: Floats, target: Floats, *, most: int = MOST_NODE
     ----------
     form : (m, m) symmetric positive definite.
     target : (m,) the real optimum.
-    most : branches looked at before the search settles for the best one found.
+    most : branches looked at before the search settles for the best one found; the greedy vector
+        is always found.
+
+    Raises
+    ------
+    SolveError
+        When the form is not positive definite.
     """
     m = len(target)
     if m == 0:
         return LatticePoint(np.zeros(0, dtype=np.int64), 0.0, 0.0, True)
-    upper = np.linalg.cholesky(form).T  # form = upper^T upper
+    upper = _upper(form)
     scale = np.diag(upper).copy()
     share = (upper / scale[:, None]).tolist()
     weight = (scale**2).tolist()
@@ -63,7 +70,7 @@ def closest_lattice_point(form: Floats, target: Floats, *, most: int = MOST_NODE
     while True:
         energy = partial[k + 1] + weight[k] * (point[k] - centre[k]) ** 2
         nodes += 1
-        if energy < best_energy and nodes <= most:
+        if energy < best_energy and (nodes <= most or not best):
             if k > 0:
                 partial[k] = energy
                 k -= 1
@@ -81,3 +88,15 @@ def closest_lattice_point(form: Floats, target: Floats, *, most: int = MOST_NODE
         point[k] += step[k]
         step[k] = -step[k] - (1 if step[k] > 0 else -1)
     return LatticePoint(np.array(best, dtype=np.int64), best_energy, greedy, nodes <= most)
+
+
+def _upper(form: Floats) -> Floats:
+    """The factor with ``form = upper^T upper``."""
+    try:
+        return np.asarray(np.linalg.cholesky(form).T)
+    except np.linalg.LinAlgError as error:
+        raise SolveError(
+            "The integers of the chart are not determined by its energy",
+            value=f"{len(form)} integers; {error}",
+            advice="a smaller part of the surface, or other directions",
+        ) from error

@@ -6,6 +6,7 @@ A cell at the rim is a chain of crossings that follow each other around it. Its 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
@@ -18,6 +19,12 @@ from gridshell.surface.triangle_mesh import after
 
 _LEAST_SHARE = 0.05
 """Of a cell's side: shorter ends at the rim are left out."""
+
+_SHORTEST = 0.3
+"""Of the edge before it: a line's end at the rim is kept this long, by moving its last crossing."""
+
+_LEAST_STEP, _LARGEST_STEP = 0.75, 4.0 / 3.0
+"""Of the edge before it: an edge that continues a line beyond the rim."""
 
 
 class Extent(Enum):
@@ -39,22 +46,31 @@ class Cells:
     ----------
     positions : (n, 3) mm; crossings first, ghosts after them.
     quads : (q, 4), counter-clockwise; the first side runs along family 1.
-    ghosts : number of vertices beyond the crossings.
+    whole : number of quads, the first ones, whose corners are all crossings on the surface.
     """
 
     positions: Points
     quads: Indices
-    ghosts: int
+    whole: int
 
 
-def cells(found: Extracted, positions: Points, extent: Extent) -> Cells:
-    """The cells of *extent* over crossings at *positions* (c, 3), mm."""
+Onto = Callable[[Points], Points]
+"""Brings points (n, 3) onto the surface."""
+
+
+def cells(found: Extracted, positions: Points, extent: Extent, *, onto: Onto) -> Cells:
+    """The cells of *extent* over crossings at *positions* (c, 3), mm.
+
+    Parameters
+    ----------
+    onto : for crossings close to the rim, which ``TRIMMED`` moves along their lines.
+    """
     if extent is Extent.INSIDE:
-        return Cells(positions, found.cells, 0)
+        return Cells(positions, found.cells, len(found.cells))
     rim = _Rim(found)
     open_cells = rim.cells()
     if not open_cells:
-        return Cells(positions, found.cells, 0)
+        return Cells(positions, found.cells, len(found.cells))
     names = sorted({rim.name(c) for cell in open_cells for c in cell if isinstance(c, tuple)})
     number = {name: len(positions) + i for i, name in enumerate(names)}
     keys: dict[tuple[int, int], list[tuple[int, int]]] = {name: [] for name in names}
@@ -69,6 +85,9 @@ def cells(found: Extracted, positions: Points, extent: Extent) -> Cells:
     quads = [
         [c if isinstance(c, int) else number[rim.name(c)] for c in cell] for cell in open_cells
     ]
+    if extent is Extent.TRIMMED:
+        places = {key: ghosts[i] for i, name in enumerate(names) for key in keys[name]}
+        positions = rim.kept_apart(places, positions, onto)
     return _completed(positions, np.array(ghosts), found.cells, np.array(quads), extent)
 
 
@@ -98,7 +117,7 @@ def _completed(
         )
     )
     good &= area > (2.0 * _LEAST_SHARE if extent is Extent.TRIMMED else 0.0) * size
-    return Cells(total, np.concatenate([whole, quads[good]]), len(ghosts))
+    return Cells(total, np.concatenate([whole, quads[good]]), len(whole))
 
 
 Key = tuple[int, int]
@@ -202,14 +221,32 @@ class _Rim:
 
     def continued(self, key: Key, positions: Points) -> Floats | None:
         """Beyond the crossing, along its line: quadratically where three points are known."""
-        line = self._line(key)
-        if len(line) == 3:
-            x0, x1, x2 = positions[line]
-            return np.asarray(3.0 * x0 - 3.0 * x1 + x2)
-        if len(line) == 2:
-            x0, x1 = positions[line]
-            return np.asarray(2.0 * x0 - x1)
-        return None
+        line = positions[self._line(key)]
+        if len(line) < 2:
+            return None
+        last = line[0] - line[1]
+        step = 2.0 * last - (line[1] - line[2]) if len(line) == 3 else last
+        before, length = float(np.linalg.norm(last)), float(np.linalg.norm(step))
+        if length == 0.0:
+            return None
+        wanted = min(max(length, _LEAST_STEP * before), _LARGEST_STEP * before)
+        return np.asarray(line[0] + step * (wanted / length))
+
+    def kept_apart(self, places: dict[Key, Floats], positions: Points, onto: Onto) -> Points:
+        """Crossings close to the end of their own line, moved back along it."""
+        moves = np.zeros_like(positions)
+        for key, place in places.items():
+            line = self._line(key)
+            if len(line) < 2 or not np.isfinite(place).all():
+                continue
+            back = positions[line[1]] - positions[line[0]]
+            gap = float(np.linalg.norm(place - positions[line[0]]) / np.linalg.norm(back))
+            moves[line[0]] += max(0.0, _SHORTEST - gap) * back
+        moved = np.flatnonzero(moves.any(axis=1))
+        result = positions.copy()
+        if len(moved):
+            result[moved] = onto(positions[moved] + moves[moved])
+        return result
 
     def _line(self, key: Key) -> list[int]:
         """The crossing and up to two before it on the line of a way."""

@@ -68,9 +68,13 @@ def extract(found: Seamless) -> Extracted:
 
 
 def barycentric(chart: ExactChart, face: Indices, at: Indices) -> Floats:
-    """(m, 3) weights of chart positions *at* (m, 2) in triangles *face* (m,)."""
+    """(m, 3) weights of chart positions *at* (m, 2) in triangles *face* (m,).
+
+    In a triangle that is flat in the chart it is the first corner's.
+    """
     a, b, c = np.moveaxis(chart.corners[face], 1, 0)
     total = cross(b - a, c - a).astype(np.float64)
+    total[total == 0.0] = 1.0
     second, third = cross(at - a, c - a) / total, cross(b - a, at - a) / total
     return np.stack([1.0 - second - third, second, third], axis=1)
 

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from gridshell.arrays import Floats, Indices
+from gridshell.errors import SolveError
 from gridshell.remesh.charts import Charts
 from gridshell.remesh.closest_lattice_point import LatticePoint, closest_lattice_point
 from gridshell.solve import Engine, solve_definite
@@ -76,7 +77,7 @@ def coordinate(mesh: TriangleMesh, unknowns: Charts, target: Target, engine: Eng
     Raises
     ------
     SolveError
-        When the linear system cannot be factored.
+        When the linear system cannot be factored, or does not determine the integers.
     """
     operator, right = _rows(mesh, target)
     real = (operator @ unknowns.reals).tocsr()
@@ -86,7 +87,7 @@ def coordinate(mesh: TriangleMesh, unknowns: Charts, target: Target, engine: Eng
     # reduced to the integers: the reals follow them
     form = whole.T @ whole - coupled[:, 1:].T @ solved[:, 1:]
     pull = whole.T @ right - coupled[:, 1:].T @ solved[:, 0]
-    free = np.linalg.solve(form, pull) if len(pull) else pull
+    free = _determined(form, pull)
     values = real @ (solved[:, 0] - solved[:, 1:] @ free) + whole @ free
     stretch = _stretch(values, right)
     found = closest_lattice_point((form + form.T) / 2.0, free / stretch)
@@ -94,6 +95,20 @@ def coordinate(mesh: TriangleMesh, unknowns: Charts, target: Target, engine: Eng
     reals = np.round(reals / GRAIN) * GRAIN
     corners = unknowns.reals @ reals + unknowns.integers @ (LATTICE * found.integers)
     return Coordinate(np.asarray(corners).reshape(-1, 3), found, stretch)
+
+
+def _determined(form: Floats, pull: Floats) -> Floats:
+    """The real optimum of the integers (m,)."""
+    if len(pull) == 0:
+        return pull
+    try:
+        return np.asarray(np.linalg.solve(form, pull))
+    except np.linalg.LinAlgError as error:
+        raise SolveError(
+            "The integers of the chart are not determined by its energy",
+            value=f"{len(pull)} integers; {error}",
+            advice="a smaller part of the surface, or other directions",
+        ) from error
 
 
 def _rows(mesh: TriangleMesh, target: Target) -> tuple[csr_matrix, Floats]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gridshell.arrays import Floats, Points
-from gridshell.errors import ColouringError, MeshError, SettingError, SurfaceError
+from gridshell.errors import ColouringError, MeshError, SettingError
 from gridshell.field import (
     FieldReport,
     FrameField,
@@ -18,12 +18,13 @@ from gridshell.field import (
     require_curvature,
     singularities,
 )
-from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, main_piece, two_colouring
+from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, two_colouring
 from gridshell.remesh.directions import Conjugate, Directions
-from gridshell.remesh.extent import Cells, Extent, cells
+from gridshell.remesh.extent import Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
 from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
 from gridshell.remesh.seamless import LADDER, Seamless, seamless
+from gridshell.remesh.tidying import require_around, tidy
 from gridshell.remesh.working_surface import Source, WorkingSurface, area_of, working_surface
 from gridshell.solve import Engine
 from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
@@ -101,7 +102,7 @@ def quadrangulate(
         When neither or both of *quads* and *edge* are given, or one is not positive.
     SurfaceError
         One of its kinds: flat, umbilic, not hyperbolic, angle infeasible, pole, too many
-        singularities, or too few cells for a mesh.
+        singularities, or a target too coarse for it.
     """
     start = time.perf_counter()
     ready = (
@@ -122,8 +123,10 @@ def quadrangulate(
     positions = lift(refined.curved, found.faces, found.weights)
     if ready.exact and len(positions):
         positions = ready.reference.closest(positions).points
-    made = cells(found, positions, extent)
-    mesh = _tidy(made, spacing)
+    if len(chart.folded) == 0:  # folds make cells that are none, which are left out
+        require_around(found, positions, spacing)
+    made = cells(found, positions, extent, onto=lambda x: ready.reference.closest(x).points)
+    mesh = tidy(made, spacing)
     points, errors = _strays(found, refined.field)
     hand = directions.hand if isinstance(directions, Conjugate) else None
     about = field_report(refined.curved, refined.field, hand=hand)
@@ -183,19 +186,6 @@ def _spacing(field: FrameField, quads: int | None, edge: float | None) -> float:
     if edge is not None:
         return float(edge)
     return float(np.sqrt((field.mesh.areas / np.sin(field.angle)).sum() / float(quads or 1)))
-
-
-def _tidy(made: Cells, spacing: float) -> QuadMesh:
-    """The main piece of the cells."""
-    quads = made.quads[main_piece(made.quads)]
-    if len(quads) == 0:
-        raise SurfaceError(
-            "No quad fits on the surface",
-            value=f"edges of {spacing:.4g} mm",
-            advice="more quads, or a shorter edge",
-        )
-    used, compact = np.unique(quads, return_inverse=True)
-    return QuadMesh(made.positions[used], compact.reshape(-1, 4))
 
 
 def _strays(found: Extracted, field: FrameField) -> tuple[Points, Floats]:

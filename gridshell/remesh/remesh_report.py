@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gridshell.arrays import Floats
-from gridshell.surface import CurvedMesh, Remark, TriangulatedSurface
+from gridshell.surface import CurvedMesh, Remark, TriangleMesh, TriangulatedSurface
 
 _SAMPLES = 4000
 """Triangles whose centroids tell how much is covered."""
@@ -97,15 +97,21 @@ class RemeshReport:
 def coverage(curved: CurvedMesh, over: TriangulatedSurface, spacing: float) -> float:
     """Share of the surface's area under the quads *over*, whose edges are about *spacing* mm.
 
-    A triangle counts when the foot of its centroid lies along its normal, not to the side.
+    A triangle counts when the foot of its centroid lies inside of them, or on their rim but along
+    the triangle's normal, not to the side.
     """
     mesh = curved.mesh
     step = max(1, len(mesh.triangles) // _SAMPLES)
     some = np.arange(0, len(mesh.triangles), step)
+    halves = TriangleMesh(over.vertices, over.triangles)
     points, normals = mesh.centroids[some], mesh.face_normals[some]
-    foot = over.closest(points)
-    away = points - foot.points
+    faces, weights = over.locate(points)
+    foot = np.einsum("mk,mkc->mc", weights, over.vertices[over.triangles[faces]])
+    away = points - foot
     side = away - np.einsum("mc,mc->m", away, normals)[:, None] * normals
-    covered = np.linalg.norm(side, axis=1) <= _BESIDE * spacing
+    on_edge = np.roll(weights, 1, axis=1) <= 0.0  # none of the corner behind it
+    on_rim = (on_edge & (halves.twin.reshape(-1, 3)[faces] < 0)).any(axis=1)
+    on_rim |= ((weights >= 1.0) & halves.on_boundary[halves.triangles[faces]]).any(axis=1)
+    covered = ~on_rim | (np.linalg.norm(side, axis=1) <= _BESIDE * spacing)
     weight = mesh.areas[some]
     return float(weight[covered].sum() / weight.sum())

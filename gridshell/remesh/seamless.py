@@ -26,9 +26,15 @@ LADDER = ((100.0, False), (100.0, True), (30.0, False), (10.0, False), (3.0, Fal
 SOFT = 3.0
 """Weight of direction next to a singular vertex, at most."""
 
+SOFTEST = 1.0
+"""Weight of direction where triangles fold, at least: that of the isotropic energy."""
+
 _STIFFENINGS = 5
+_AROUND = 4.0
+"""Times its own area that a folded triangle spoils."""
+
 _FEW = 0.01
-"""Folded triangles may spoil this share of the cells."""
+"""Share of the cells that folded triangles may spoil."""
 
 _WRONG_CONE = 0.1
 """Difference of a chart's angle sum from the right one that counts, radians."""
@@ -87,18 +93,12 @@ def seamless(
     best: Seamless | None = None
     for lam, by_factor in ladder:
         found = work.rung(lam, by_factor)
-        if best is None or _faults(found) < _faults(best):
+        if best is None or work.spoilt(found) < work.spoilt(best):
             best = found
-        if _faults(best) == 0:
-            return best
-        if _faults(best) <= _FEW * work.cells:
-            return best
+        if work.spoilt(best) <= _FEW * work.cells:
+            break
     assert best is not None
     return best
-
-
-def _faults(chart: Seamless) -> int:
-    return len(chart.folded) + len(chart.cones)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +137,19 @@ class _Work:
         mesh = self.field.mesh
         return float((mesh.areas / np.sin(self.field.angle)).sum() / self.spacing**2)
 
+    def spoilt(self, chart: Seamless) -> float:
+        """Cells that the chart's faults spoil.
+
+        Around folded triangles it is their share of the area, several times; a wrong cone where
+        nothing is folded is a singular vertex that the field does not have, and spoils all.
+        """
+        mesh = self.field.mesh
+        beside = np.zeros(len(mesh.vertices), dtype=bool)
+        beside[mesh.triangles[chart.folded]] = True
+        wrong = np.count_nonzero(~beside[chart.cones])
+        share = len(chart.folded) / len(mesh.triangles)
+        return self.cells * (_AROUND * share + wrong)
+
     def rung(self, lam: float, by_factor: bool) -> Seamless:
         """Solve with the weight *lam*, stiffening where triangles fold."""
         mesh = self.field.mesh
@@ -147,13 +160,13 @@ class _Work:
         best: Seamless | None = None
         for _ in range(_STIFFENINGS + 1):
             found = self._solve(lams, weight, lam, by_factor)
-            if best is None or _faults(found) < _faults(best):
+            if best is None or self.spoilt(found) < self.spoilt(best):
                 best = found
-            if _faults(found) == 0:
+            if self.spoilt(found) == 0.0:
                 break
             bad = np.unique(mesh.triangles[found.folded])
             soft = np.union1d(ring(mesh, bad, 1), ring(mesh, found.cones, 4))
-            lams[soft] /= 5.0
+            lams[soft] = np.maximum(lams[soft] / 5.0, SOFTEST)
             weight[soft] *= 1.5
         assert best is not None
         return best

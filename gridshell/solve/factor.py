@@ -43,4 +43,6 @@ def solve_definite(matrix: csr_matrix, right: Floats, engine: Engine | None = No
         raise SolveError("The linear system could not be factored", value=str(error)) from error
     result = np.empty_like(right)
     result[order] = factor.solve(np.ascontiguousarray(right[order]))
+    if not np.isfinite(result).all():
+        raise SolveError("The linear system could not be factored", value="it is singular")
     return result

@@ -13,7 +13,7 @@ from gridshell.surface.constrained_delaunay import inside
 from gridshell.surface.forms import dot
 from gridshell.surface.nurbs import NurbsCurve
 from gridshell.surface.patch_foot import settle
-from gridshell.surface.planar_mesher import mesh_domain
+from gridshell.surface.planar_mesher import mesh_domain, require_few
 
 _LARGEST_TURN = np.pi / 3.0  # of an edge's direction between two of its samples
 _TINY = 0.25  # of the edge length: shorter edges shrink to a vertex
@@ -62,6 +62,7 @@ def tessellated(model: BrepModel, *, edge: float) -> Tessellation:
     SurfaceError
         When a face is too small or too thin for *edge*, or its outline crosses itself.
     """
+    require_few(sum(face_area(face) for face in model.faces), edge)
     border = _Border(model, edge)
     vertices, count = [border.positions], len(border.positions)
     parts = []
@@ -112,8 +113,6 @@ class _Border:
     """Samples of every edge: parameters t, and the vertex each sample is."""
 
     def __init__(self, model: BrepModel, edge: float) -> None:
-        if not edge > 0.0:
-            edge = np.nan  # refused by the mesher, in its words
         self.model, self.size = model, model.size
         self.t = [_sampled(e.curve, edge) for e in model.edges]
         root = list(range(len(model.vertices)))
@@ -184,8 +183,7 @@ def _sampled(curve: NurbsCurve | None, edge: float) -> Floats:
     rate = np.linalg.norm(x1, axis=1, keepdims=True)
     ahead = x1 / np.where(rate > 0.0, rate, 1.0)
     turn = np.arccos(np.clip(dot(ahead[1:], ahead[:-1]), -1.0, 1.0)).sum()
-    wanted = length[-1] / edge if edge > 0.0 else 1.0
-    count = max(1, round(min(wanted, 1e6)), int(np.ceil(turn / _LARGEST_TURN - 1e-6)))
+    count = max(1, round(length[-1] / edge), int(np.ceil(turn / _LARGEST_TURN - 1e-6)))
     steps: Floats = np.interp(np.arange(count + 1) / count * length[-1], length, t)
     steps[0], steps[-1] = 0.0, 1.0
     return steps

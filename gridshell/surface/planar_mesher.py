@@ -116,15 +116,8 @@ def _interior(chart: Chart, polygons: Sequence[Floats], edge: float) -> Floats:
 
     corner = np.concatenate(polygons)
     share = abs(sum(signed_area(p) for p in polygons)) / float(np.prod(np.ptp(corner, axis=0)))
+    require_few(chart.area * share, edge)
     wanted = chart.area / (edge * edge * 0.866)
-    if not edge > 0.0 or 2.0 * wanted * share > LARGEST:
-        raise SettingError(
-            "The edge length makes too many triangles",
-            where="edge",
-            value=f"{edge:.6g} mm on {chart.area * share:.4g} mm2",
-            limit=f"> 0 mm and fewer than {LARGEST} triangles",
-            advice="give a longer edge",
-        )
     candidates = chart.samples(int(_CANDIDATES * wanted) + 16)
     candidates = candidates[inside(candidates, polygons)]
     places = chart.derivatives(candidates).x
@@ -133,6 +126,24 @@ def _interior(chart: Chart, polygons: Sequence[Floats], edge: float) -> Floats:
     free = border.query(places)[0] > _FROM_BOUNDARY * edge
     candidates, places = candidates[free], places[free]
     return np.asarray(candidates[_apart(places, _SPACING * edge)])
+
+
+def require_few(area: float, edge: float) -> None:
+    """Refuse an edge length, mm, that makes more than two million triangles on *area*, mm2.
+
+    Raises
+    ------
+    SettingError
+        Also for an edge length that is not positive.
+    """
+    if not edge > 0.0 or 2.0 * area > LARGEST * edge * edge * 0.866:
+        raise SettingError(
+            "The edge length makes too many triangles",
+            where="edge",
+            value=f"{edge:.6g} mm on {area:.4g} mm2",
+            limit=f"> 0 mm and fewer than {LARGEST} triangles",
+            advice="give a longer edge",
+        )
 
 
 def _apart(places: Floats, distance: float) -> Mask:

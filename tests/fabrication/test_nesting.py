@@ -111,3 +111,26 @@ def test_the_same_parts_are_placed_the_same_way_in_any_order():
 def test_the_used_share_of_a_sheet_is_part_area_over_sheet_area():
     (sheet,) = fab.nest([part(1, 3000.0)], SHEET)
     assert sheet.used == pytest.approx((3000.0 * 100.0 - 3.0 * 50.0) / (6000.0 * 767.0))
+
+
+sizes = st.lists(
+    st.tuples(st.floats(20.0, 2000.0), st.floats(20.0, 740.0)), min_size=1, max_size=40
+)
+
+
+@given(sizes)
+def test_parts_of_different_widths_stay_apart_and_inside(pairs):
+    room = box(12.0, 12.0, 6000.0 - 12.0, 767.0 - 12.0).buffer(1e-6)
+    parts = [part(i, length, width) for i, (length, width) in enumerate(pairs)]
+    sheets = fab.nest(parts, SHEET)
+    assert sum(len(sheet.placements) for sheet in sheets) == len(parts)
+    for sheet in sheets:
+        hulls = [shape.envelope for shape in placed(sheet)]
+        assert all(room.contains(hull) for hull in hulls)
+        assert all(a.distance(b) > 8.0 - 1e-6 for a, b in combinations(hulls, 2))
+
+
+def test_rows_of_low_parts_share_a_sheet_with_rows_of_high_ones():
+    parts = [part(0, 5000.0, 500.0), *(part(i, 5000.0, 100.0) for i in range(1, 4))]
+    sheets = fab.nest(parts, SHEET)
+    assert [len(sheet.placements) for sheet in sheets] == [3, 1]

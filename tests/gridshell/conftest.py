@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -157,3 +160,14 @@ def enneper() -> Callable[[int], gs.ControlMesh]:
         return gs.control_patch(gs.Enneper(4000.0), patch)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def brep_shapes() -> ModuleType:
+    """Makers of kernel shapes, in the file beside this one."""
+    spec = spec_from_file_location("brep_shapes", Path(__file__).with_name("brep_shapes.py"))
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
