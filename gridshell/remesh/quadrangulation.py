@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.arrays import Floats, Points
+from gridshell.arrays import Floats, Indices, Points
 from gridshell.errors import ColouringError, MeshError, SettingError
 from gridshell.field import (
     FieldReport,
@@ -28,6 +28,7 @@ from gridshell.remesh.tidying import require_around, tidy
 from gridshell.remesh.working_surface import Source, WorkingSurface, area_of, working_surface
 from gridshell.solve import Engine
 from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
+from gridshell.surface.triangle_mesh import place
 
 _LEAST_LAM = 10.0
 _LARGEST_STRAY = 5.0
@@ -138,6 +139,7 @@ def quadrangulate(
         Spread.of(np.degrees(errors)),
         found,
         spacing,
+        turns.vertices,
         ready.remarks,
         time.perf_counter() - start,
     )
@@ -210,6 +212,7 @@ def _report(
     stray: Spread,
     found: Extracted,
     spacing: float,
+    singular: Indices,
     remarks: tuple[Remark, ...],
     seconds: float,
 ) -> RemeshReport:
@@ -244,7 +247,7 @@ def _report(
         integers=sum(len(i.integers) for i in integers),
         integers_exact=all(i.exact for i in integers),
         triangles=len(curved.mesh.triangles),
-        remarks=(*remarks, *_findings(chart, about, stray, control_quads)),
+        remarks=(*remarks, *_findings(chart, about, stray, control_quads, singular)),
         seconds=seconds,
     )
 
@@ -262,7 +265,7 @@ def _colours(mesh: QuadMesh) -> tuple[int, int]:
 
 
 def _findings(
-    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int
+    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int, singular: Indices
 ) -> list[Remark]:
     found = []
     if chart.lam <= _LEAST_LAM or stray.p95 > _LARGEST_STRAY:
@@ -273,6 +276,19 @@ def _findings(
                 f"degrees on average, {stray.p95:.1f} for the 95th of a hundred; try a hole at a "
                 "singular point, another angle, or a smaller part of the surface",
                 stray.p95,
+            )
+        )
+    lost = np.intersect1d(chart.cones, singular)
+    lost = np.union1d(lost, np.intersect1d(chart.mesh.triangles[chart.folded], singular))
+    if len(lost):
+        found.append(
+            Remark(
+                "singular-point-lost",
+                f"{len(lost)} of {len(singular)} singular points of the directions could not be "
+                "made vertices of the mesh, which has a hole there; ask for other quads, or smooth "
+                "the surface there",
+                float(len(lost)),
+                place(chart.mesh.vertices[lost[0]]),
             )
         )
     if about.infeasible_area > 0.0:
