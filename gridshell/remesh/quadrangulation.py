@@ -22,17 +22,13 @@ from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, two_colouring
 from gridshell.remesh.directions import Conjugate, Directions
 from gridshell.remesh.extent import Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
+from gridshell.remesh.findings import findings
 from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
 from gridshell.remesh.seamless import LADDER, Seamless, seamless
 from gridshell.remesh.tidying import require_around, tidy
 from gridshell.remesh.working_surface import Source, WorkingSurface, area_of, working_surface
 from gridshell.solve import Engine
 from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
-from gridshell.surface.triangle_mesh import place
-
-_LEAST_LAM = 10.0
-_LARGEST_STRAY = 5.0
-"""Degrees: 95th percentile of the alignment beyond which the field counts as not integrable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +243,7 @@ def _report(
         integers=sum(len(i.integers) for i in integers),
         integers_exact=all(i.exact for i in integers),
         triangles=len(curved.mesh.triangles),
-        remarks=(*remarks, *_findings(chart, about, stray, control_quads, singular)),
+        remarks=(*remarks, *findings(chart, about, stray, control_quads, singular)),
         seconds=seconds,
     )
 
@@ -262,48 +258,3 @@ def _colours(mesh: QuadMesh) -> tuple[int, int]:
         return 0, len(control_mesh(mesh).quads)
     except MeshError:
         return 0, 0
-
-
-def _findings(
-    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int, singular: Indices
-) -> list[Remark]:
-    found = []
-    if chart.lam <= _LEAST_LAM or stray.p95 > _LARGEST_STRAY:
-        found.append(
-            Remark(
-                "not-integrable",
-                f"the directions cannot be followed evenly: the edges are off by {stray.mean:.1f} "
-                f"degrees on average, {stray.p95:.1f} for the 95th of a hundred; try a hole at a "
-                "singular point, another angle, or a smaller part of the surface",
-                stray.p95,
-            )
-        )
-    lost = np.intersect1d(chart.cones, singular)
-    lost = np.union1d(lost, np.intersect1d(chart.mesh.triangles[chart.folded], singular))
-    if len(lost):
-        found.append(
-            Remark(
-                "singular-point-lost",
-                f"{len(lost)} of {len(singular)} singular points of the directions could not be "
-                "made vertices of the mesh, which has a hole there; ask for other quads, or smooth "
-                "the surface there",
-                float(len(lost)),
-                place(chart.mesh.vertices[lost[0]]),
-            )
-        )
-    if about.infeasible_area > 0.0:
-        effect = "; the angle has no effect anywhere" if about.infeasible_area > 1.0 - 1e-9 else ""
-        found.append(
-            Remark(
-                "angle-infeasible",
-                f"{about.infeasible_area:.1%} of the area has no such pair of directions; the "
-                f"angles reached are {np.degrees(about.angles[0]):.1f} to "
-                f"{np.degrees(about.angles[-1]):.1f} degrees{effect}",
-                about.infeasible_area,
-            )
-        )
-    if control_quads == 0:
-        found.append(
-            Remark("too-coarse", "the quads are too few to hold a control mesh; ask for more", 0.0)
-        )
-    return found
