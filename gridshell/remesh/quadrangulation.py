@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.arrays import Floats, Points
+from gridshell.arrays import Floats, Indices, Points
 from gridshell.errors import ColouringError, MeshError, SettingError
 from gridshell.field import (
     FieldReport,
@@ -22,16 +22,13 @@ from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, two_colouring
 from gridshell.remesh.directions import Conjugate, Directions
 from gridshell.remesh.extent import Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
+from gridshell.remesh.findings import findings
 from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
 from gridshell.remesh.seamless import LADDER, Seamless, seamless
 from gridshell.remesh.tidying import require_around, tidy
 from gridshell.remesh.working_surface import Source, WorkingSurface, area_of, working_surface
 from gridshell.solve import Engine
 from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
-
-_LEAST_LAM = 10.0
-_LARGEST_STRAY = 5.0
-"""Degrees: 95th percentile of the alignment beyond which the field counts as not integrable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +135,7 @@ def quadrangulate(
         Spread.of(np.degrees(errors)),
         found,
         spacing,
+        turns.vertices,
         ready.remarks,
         time.perf_counter() - start,
     )
@@ -210,6 +208,7 @@ def _report(
     stray: Spread,
     found: Extracted,
     spacing: float,
+    singular: Indices,
     remarks: tuple[Remark, ...],
     seconds: float,
 ) -> RemeshReport:
@@ -244,7 +243,7 @@ def _report(
         integers=sum(len(i.integers) for i in integers),
         integers_exact=all(i.exact for i in integers),
         triangles=len(curved.mesh.triangles),
-        remarks=(*remarks, *_findings(chart, about, stray, control_quads)),
+        remarks=(*remarks, *findings(chart, about, stray, control_quads, singular)),
         seconds=seconds,
     )
 
@@ -259,35 +258,3 @@ def _colours(mesh: QuadMesh) -> tuple[int, int]:
         return 0, len(control_mesh(mesh).quads)
     except MeshError:
         return 0, 0
-
-
-def _findings(
-    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int
-) -> list[Remark]:
-    found = []
-    if chart.lam <= _LEAST_LAM or stray.p95 > _LARGEST_STRAY:
-        found.append(
-            Remark(
-                "not-integrable",
-                f"the directions cannot be followed evenly: the edges are off by {stray.mean:.1f} "
-                f"degrees on average, {stray.p95:.1f} for the 95th of a hundred; try a hole at a "
-                "singular point, another angle, or a smaller part of the surface",
-                stray.p95,
-            )
-        )
-    if about.infeasible_area > 0.0:
-        effect = "; the angle has no effect anywhere" if about.infeasible_area > 1.0 - 1e-9 else ""
-        found.append(
-            Remark(
-                "angle-infeasible",
-                f"{about.infeasible_area:.1%} of the area has no such pair of directions; the "
-                f"angles reached are {np.degrees(about.angles[0]):.1f} to "
-                f"{np.degrees(about.angles[-1]):.1f} degrees{effect}",
-                about.infeasible_area,
-            )
-        )
-    if control_quads == 0:
-        found.append(
-            Remark("too-coarse", "the quads are too few to hold a control mesh; ask for more", 0.0)
-        )
-    return found

@@ -36,6 +36,9 @@ _AROUND = 4.0
 _FEW = 0.01
 """Share of the cells that folded triangles may spoil."""
 
+_WORTH = 0.25
+"""Of the spoilt cells that may be left for directions to be given up, where some stay spoilt."""
+
 _WRONG_CONE = 0.1
 """Difference of a chart's angle sum from the right one that counts, radians."""
 
@@ -93,7 +96,8 @@ def seamless(
     best: Seamless | None = None
     for lam, by_factor in ladder:
         found = work.rung(lam, by_factor)
-        if best is None or work.spoilt(found) < work.spoilt(best):
+        worth = 1.0 if lam == ladder[0][0] or work.spoilt(found) <= _FEW * work.cells else _WORTH
+        if best is None or work.spoilt(found) < worth * work.spoilt(best):
             best = found
         if work.spoilt(best) <= _FEW * work.cells:
             break
@@ -140,13 +144,16 @@ class _Work:
     def spoilt(self, chart: Seamless) -> float:
         """Cells that the chart's faults spoil.
 
-        Around folded triangles it is their share of the area, several times; a wrong cone where
-        nothing is folded is a singular vertex that the field does not have, and spoils all.
+        Around folded triangles it is their share of the area, several times. A wrong cone where
+        nothing is folded is a singular vertex that the field does not have, and a fold or a wrong
+        cone at a singular vertex one that the net will not have: any of them spoils all.
         """
         mesh = self.field.mesh
         beside = np.zeros(len(mesh.vertices), dtype=bool)
         beside[mesh.triangles[chart.folded]] = True
         wrong = np.count_nonzero(~beside[chart.cones])
+        beside[chart.cones] = True
+        wrong += np.count_nonzero(beside[self.turns.vertices])
         share = len(chart.folded) / len(mesh.triangles)
         return self.cells * (_AROUND * share + wrong)
 
@@ -180,7 +187,7 @@ class _Work:
             rise = 1.0 / (self.spacing * np.sin(field.angle))
             if by_factor:
                 covector = across * rise[:, None]
-                rise = rise * integrating_factor(mesh, covector, self.cut.flips)
+                rise = rise * integrating_factor(mesh, covector, self.cut.flips, self.engine)
             target = Target(lines, across, rise, weight, lams)
             unknowns = self.unknowns[len(found)]
             found.append(coordinate(mesh, unknowns, target, self.engine))

@@ -10,20 +10,28 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from gridshell.arrays import Floats, Indices
-from gridshell.solve import solve_definite
+from gridshell.solve import Engine, solve_definite
 from gridshell.surface import TriangleMesh
 
 _SMOOTH = 1e-3
 _HELD = 1e-9
 
 
-def integrating_factor(mesh: TriangleMesh, q: Floats, flips: Indices) -> Floats:
+def integrating_factor(
+    mesh: TriangleMesh, q: Floats, flips: Indices, engine: Engine | None = None
+) -> Floats:
     """(f,) positive factors on the covectors *q* (f, 2), about one on average.
 
     Parameters
     ----------
     q : in the faces' frames, 1/mm; an edge along the lines, their kernel, says nothing.
     flips : (3f,) sign between the covectors on both sides.
+    engine : solver of the linear system.
+
+    Raises
+    ------
+    SolveError
+        When the linear system cannot be factored.
     """
     inner = np.flatnonzero(mesh.twin > np.arange(len(mesh.twin)))
     other = mesh.twin[inner]
@@ -49,5 +57,5 @@ def integrating_factor(mesh: TriangleMesh, q: Floats, flips: Indices) -> Floats:
     matrix = csr_matrix((data, (rows, columns)), shape=(n, n))
     pull = weight * jump
     right = np.bincount(f, pull, n) - np.bincount(g, pull, n)
-    sigma = solve_definite(matrix, np.asarray(right, dtype=np.float64)[:, None])[:, 0]
+    sigma = solve_definite(matrix, np.asarray(right, dtype=np.float64)[:, None], engine)[:, 0]
     return np.asarray(np.exp(sigma - np.average(sigma, weights=mesh.areas)))
