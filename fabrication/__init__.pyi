@@ -39,6 +39,7 @@ from .outlines import Frame as Frame
 from .package import run as run
 from .panel import Panel as Panel
 from .panel import PanelSpec as PanelSpec
+from .panel import panel_findings as panel_findings
 from .panel import panel_groups as panel_groups
 from .panel import panels as panels
 from .parts import FlatPart as FlatPart
