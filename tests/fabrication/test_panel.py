@@ -8,6 +8,7 @@ from shapely.geometry import Polygon
 import fabrication as fab
 import gridshell as gs
 from fabrication.outlines import polygon_area
+from gridshell.mesh import grid_quads
 
 SPEC = fab.PanelSpec(gap=20.0, thickness=12.0, material=fab.GLASS, clearance=2.0)
 WAYS = st.tuples(*[st.floats(-3.0, 3.0)] * 3, *[st.floats(-1e5, 1e5)] * 3)
@@ -166,3 +167,22 @@ def test_the_panels_of_a_rotational_net_are_equal_around_the_axis():
     assert [len(g.members) for g in groups] == [around] * across
     # a ring's panel is its own mirror image, so no member needs turning over
     assert not any(m.mirrored for g in fab.panel_groups(made, 0.01, mirror=True) for m in g.members)
+
+
+def test_a_rotational_net_of_rhombi_has_one_kind_of_panel_per_ring():
+    """Fig. 7 at 60 degrees, optimised and not built by hand.
+
+    A panel is its own mirror image about its meridian, so one turned round fits below the equator.
+    """
+    around, across, turn = 24, 7, np.pi / 3.0
+    v = (np.arange(across + 1) - across / 2.0) * 2.0 * np.pi / around / np.tan(turn / 2.0)
+    u, v = np.meshgrid(2.0 * np.pi * np.arange(around) / around, v, indexing="ij")
+    xyz = [np.cos(u) / np.cosh(v), np.sin(u) / np.cosh(v), np.tanh(v)]
+    points = 8000.0 * np.stack(xyz, axis=-1).reshape(-1, 3)
+    start = gs.as_control_mesh(gs.QuadMesh(points, grid_quads(around, across, ring=True)))
+    found = gs.optimize(start, gs.pq_net(angle=turn, rhombus=True), anchor=gs.Free()).require()
+    made = fab.panels(gs.skin(found.control, gs.Skin.D1), SPEC)
+    # six rings of white faces, half of them in D1, twelve panels each
+    assert len(made) == 6 * 12
+    groups = fab.panel_groups(made, 0.01)
+    assert [len(g.members) for g in groups] == [24] * 3

@@ -213,3 +213,19 @@ def test_equal_plates_are_grouped_also_when_turned_over(paraboloid):
     for group in groups:
         lengths = [plates[m.index].length for m in group.members]
         assert np.ptp(lengths) < 0.1
+
+
+@pytest.mark.parametrize("which", list(gs.Skin))
+def test_torsion_free_axes_make_plates_flat_at_any_angle(oblique_dome, which):
+    mesh = gs.skin(oblique_dome, which)
+    leaning = gs.torsion_free_axes(mesh)
+    plates = fab.supports(mesh.with_axes(leaning.axes), SECTION)
+    assert per_metre(plates) < 1e-6
+    assert fab.support_findings(plates, SECTION) == ()
+    assert radians(2.0) < leaning.tilt.max() < radians(12.0)
+
+
+def test_at_90_degrees_torsion_free_axes_are_the_nodes_own(principal_dome):
+    leaning = gs.torsion_free_axes(gs.skin(principal_dome, gs.Skin.D1))
+    assert leaning.tilt.max() < radians(0.01)
+    np.testing.assert_allclose(leaning.distance, 1.0, atol=1e-4)

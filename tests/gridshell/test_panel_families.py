@@ -101,18 +101,54 @@ def test_bad_input_is_refused_by_name(kappa, radius, tolerance, word):
         gs.cluster_panels(kappa, radius, tolerance)
 
 
-def test_curvatures_of_panels_from_their_mesh_alone():
+@pytest.mark.parametrize("lamellas", [14, 28])
+def test_a_net_of_constant_angle_needs_about_the_square_root_of_its_panels(lamellas):
+    """An A-net at 60 degrees has the ratio -1/3 everywhere (Fig. 9); no surface is needed."""
+    patch = gs.AsymptoticPatch((-1.2, 0.8), (-0.6, 1.2), (lamellas, lamellas))
+    start = gs.control_patch(gs.Enneper(4000.0), patch)
+    control = gs.optimize(start, gs.a_net(angle=np.pi / 3.0), anchor=gs.Free()).require().control
+    mesh = gs.skin(control, gs.Skin.D1)
+    kappa, radius = gs.panel_curvatures_from_mesh(mesh, control)
+    families = gs.cluster_panels(kappa, radius, gs.own_variation(mesh, kappa, radius))
+    root = np.sqrt(len(mesh.faces))
+    assert 0.3 * root < len(families.moulds) < 1.5 * root
+
+
+def catenoid(cells=24):
     surface = gs.Catenoid(4000.0)
-    patch = gs.BisectingPatch(v=(-0.6, 0.6), cells=24, u=(0.0, 1.5))
-    mesh = gs.control_patch(surface, patch).mesh
-    faces, kappa, radius = gs.panel_curvatures(mesh)
-    assert len(faces) > 0.8 * len(mesh.quads)
-    middle = mesh.vertices[mesh.quads[faces]].mean(axis=1)
-    exact = np.sort(surface.closest(middle).curvature, axis=1)
-    # at the rim only the inner corners count, and the panel is taken for its inner side
-    rim = mesh.on_boundary[mesh.quads[faces]].any(axis=1)
+    patch = gs.BisectingPatch(v=(-0.6, 0.6), cells=cells, u=(0.0, 1.5))
+    return surface, gs.control_patch(surface, patch)
+
+
+@pytest.mark.parametrize("which", [gs.Skin.D1, gs.Skin.D2])
+def test_curvatures_from_the_mesh_are_those_of_the_surface(which):
+    surface, control = catenoid()
+    mesh = gs.skin(control, which)
+    exact, radius = gs.panel_curvatures(mesh, surface)
+    kappa, same = gs.panel_curvatures_from_mesh(mesh, control)
+    np.testing.assert_array_equal(radius, same)
+    rim = mesh.boundary[mesh.faces].any(axis=1)
     np.testing.assert_allclose(kappa[~rim], exact[~rim], rtol=0.01)
-    np.testing.assert_allclose(kappa[rim], exact[rim], rtol=0.05)
-    points = mesh.vertices[mesh.quads[faces]]
-    reach = np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
-    np.testing.assert_allclose(radius, reach)
+    np.testing.assert_allclose(kappa, exact, rtol=0.1)
+    for face in range(0, len(mesh.faces), 37):
+        away = mesh.corner_points(face) - mesh.corner_points(face).mean(axis=0)
+        assert radius[face] == pytest.approx(np.linalg.norm(away, axis=1).max())
+
+
+def test_the_own_variation_is_half_a_step_to_the_neighbours():
+    points = np.array([[x, y, 0.0] for x in (0.0, 6.0, 12.0) for y in (0.0, 8.0)])
+    quads = np.array([[0, 2, 3, 1], [2, 4, 5, 3]])
+    mesh = gs.panel_mesh(points, quads, np.tile([0.0, 0.0, 1.0], (6, 1)))
+    kappa = np.array([[0.01, 0.02], [0.05, 0.01]])
+    radius = np.array([5.0, 5.0])
+    # sorted pairs (0.01, 0.02) and (0.01, 0.05)
+    assert gs.own_variation(mesh, kappa, radius) == pytest.approx(0.03 / 2.0 * 25.0 / 2.0)
+    alone = gs.panel_mesh(points, quads[:1], np.tile([0.0, 0.0, 1.0], (6, 1)))
+    assert gs.own_variation(alone, kappa[:1], radius[:1]) == 0.0
+
+
+def test_a_mesh_too_small_for_curvature_is_refused(grid):
+    control = gs.as_control_mesh(grid(2, 2))
+    mesh = gs.skin(control, gs.Skin.PATTERN)
+    with pytest.raises(gs.SettingError, match="too small"):
+        gs.panel_curvatures_from_mesh(mesh, control)
