@@ -8,6 +8,7 @@ from shapely.geometry import LineString, Point, Polygon
 
 import fabrication as fab
 import gridshell as gs
+from gridshell.mesh import grid_quads
 
 SPEC = fab.ConnectorSpec(radius=60.0, height=200.0, plate_thickness=10.0, clearance=0.5, depth=30.0)
 
@@ -135,3 +136,24 @@ def test_an_edge_along_the_axis_is_refused():
     axes[0] = [1.0, 0.0, 0.0]
     with pytest.raises(gs.SettingError, match="connector N1"):
         fab.connectors(mesh.with_axes(axes), SPEC)
+
+
+def test_equal_connectors_are_grouped_turned_or_turned_over():
+    turns = np.array([0.0, 1.0, 2.2, 4.0])
+    stars = [star(turns), star(turns + 0.7), star(-turns), star([0.0, 1.0, 2.2, 4.1])]
+    made = [fab.connectors(mesh, SPEC)[0] for mesh in stars]
+    groups = fab.connector_groups(made, 0.01)
+    assert [[m.index for m in g.members] for g in groups] == [[0, 1, 2], [3]]
+    assert [g.name for g in groups] == ["K1", "K2"]
+    assert [m.mirrored for m in groups[0].members] == [False, False, True]
+
+
+def test_on_a_cylinder_all_inner_connectors_are_one():
+    turn, along = np.meshgrid(np.linspace(-0.6, 0.6, 9), 900.0 * np.arange(7.0), indexing="ij")
+    points = np.stack([5000.0 * np.sin(turn), along, 5000.0 * np.cos(turn)], axis=-1)
+    control = gs.control_mesh(gs.QuadMesh(points.reshape(-1, 3), grid_quads(8, 6)))
+    mesh = gs.skin(control, gs.Skin.D1)
+    made = [c for c in fab.connectors(mesh, SPEC) if not mesh.boundary[c.node]]
+    assert len(made) > 1
+    (group,) = fab.connector_groups(made, 1e-6)
+    assert len(group.members) == len(made)

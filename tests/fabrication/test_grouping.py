@@ -4,7 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gridshell as gs
-from fabrication.grouping import equal_groups
+from fabrication.grouping import equal_groups, instance_frame
+from fabrication.outlines import best_frame
 
 KITE = np.array([[0.0, 0.0], [100.0, 10.0], [120.0, 90.0], [-20.0, 70.0]])
 TURNS = st.tuples(
@@ -85,3 +86,21 @@ def test_a_square_fits_without_turning():
 def test_a_tolerance_that_is_not_positive_is_refused(tolerance):
     with pytest.raises(gs.SettingError, match="tolerance"):
         equal_groups([KITE], tolerance, prefix="G")
+
+
+@given(TURNS, st.booleans(), st.floats(0.0, 0.05))
+def test_the_first_part_can_be_put_in_the_place_of_any_other(turn, over, bend):
+    other = moved(mirrored(KITE) if over else KITE, *turn)
+    other[0] += bend
+    space = np.column_stack([other, 0.3 * other[:, 0] + 0.2 * other[:, 1]])
+    frame = best_frame(space)
+    flat = frame.flat(space)
+    # the first is drawn nowhere near its mean
+    first = KITE + 500.0
+    groups = equal_groups([first, flat], 200.0, prefix="G", mirror=True)
+    member = groups[0].members[1]
+    placed = instance_frame(first, flat, frame, member)
+    numbers = member.shift - np.arange(4) if member.mirrored else member.shift + np.arange(4)
+    apart = np.linalg.norm(placed.place(first) - frame.place(flat)[numbers % 4], axis=1)
+    assert apart.max() == pytest.approx(member.deviation, abs=1e-6)
+    assert placed.normal @ frame.normal == pytest.approx(-1.0 if member.mirrored else 1.0)
