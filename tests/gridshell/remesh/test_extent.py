@@ -21,7 +21,7 @@ def made(outline, extent, seed=0):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_inside_are_the_whole_cells(seed):
-    found, positions, inside = made(BETWEEN, Extent.INSIDE, seed)
+    _, positions, inside = made(BETWEEN, Extent.INSIDE, seed)
     assert len(inside.quads) == inside.whole == 4 * 3
     assert (inside.positions == positions).all()
 

@@ -216,9 +216,7 @@ def test_the_other_side_up_changes_only_labels(directions, made):
 
 def test_an_edge_length_may_be_given_instead_of_a_number(made):
     by_number = made("scherk", Asymptotic(), 300)
-    by_edge = quadrangulate(
-        made.curved("scherk"), Asymptotic(), edge=by_number.report.spacing_mm
-    )
+    by_edge = quadrangulate(made.curved("scherk"), Asymptotic(), edge=by_number.report.spacing_mm)
     assert (by_number.mesh.quads == by_edge.mesh.quads).all()
 
 

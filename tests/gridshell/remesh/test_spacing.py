@@ -12,7 +12,7 @@ def in_frames(mesh, vectors):
 
 
 def around(mesh):
-    """The unit covector of the angle around a point beside the plane: a gradient over the radius."""
+    """The unit covector of the angle around a point beside it: a gradient over the radius."""
     e1 = np.array([1.0, 0.0, 0.3]) / np.hypot(1.0, 0.3)
     x, y = mesh.centroids @ e1 + 3000.0, mesh.centroids[:, 1]
     radius = np.hypot(x, y)
