@@ -7,7 +7,7 @@ and shape operator at any point, so that a quad mesh can be judged without the c
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -321,8 +321,15 @@ def closed_torus(wanted):
 class Case:
     """Triangles by their number, and (points) -> normals, shape operators of the exact surface."""
 
-    triangles: Callable[[float], CurvedMesh]
+    build: Callable[[float], CurvedMesh]
     shapes_at: Callable
+    _kept: dict = field(default_factory=dict)
+
+    def triangles(self, wanted):
+        """About so many triangles; made once."""
+        if wanted not in self._kept:
+            self._kept[wanted] = self.build(wanted)
+        return self._kept[wanted]
 
 
 def _formula(surface, over=None, holes=()):
