@@ -31,6 +31,8 @@ _KNOWN: dict[str, tuple[Severity, float, str]] = {
     "not-integrable": (_WARNING, 5.0, "degrees"),
     "angle-infeasible": (_WARNING, 0.0, "of the area"),
     "too-coarse": (_WARNING, 1.0, "quads"),
+    "umbilic-hole": (_INFO, 0.0, "points"),
+    "singular-point-lost": (_WARNING, 0.0, "points"),
 }
 """Severity, limit and unit of remarks that are more than a note of what was mended."""
 
@@ -165,9 +167,9 @@ def _unsound(mesh: gs.QuadMesh) -> gs.MeshError | None:
 def _sentence(error: gs.GridshellError) -> str:
     value = "" if error.value is None else f": {error.value}"
     return (
-        f"{error.what}{value}. The mesh cannot be optimised as it is, its control mesh perhaps. "
-        "At the rim, keep it inside the surface; at a singular point of valence 2, cut a hole "
-        "into the surface."
+        f"{error.what}{value}. The mesh itself cannot be optimised as it is. At the rim, keep it "
+        "inside the surface; at a singular point of valence 2 it cannot be otherwise, and the "
+        "control mesh has a hole there."
     )
 
 

@@ -51,6 +51,17 @@ def findings(
                 place(chart.mesh.vertices[lost[0]]),
             )
         )
+    narrow = np.flatnonzero(about.valences == 2)
+    if len(narrow):
+        found.append(
+            Remark(
+                "umbilic-hole",
+                f"{len(narrow)} singular points are of valence 2: the control mesh has a hole there, "
+                "as planar quads cannot go around them",
+                float(len(narrow)),
+                place(about.positions[narrow[0]]),
+            )
+        )
     if about.infeasible_area > 0.0:
         effect = "; the angle has no effect anywhere" if about.infeasible_area > 1.0 - 1e-9 else ""
         found.append(
