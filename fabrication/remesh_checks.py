@@ -17,6 +17,9 @@ MOST_QUADS = 100_000
 LEAST_COVERAGE = 0.9
 """Share of the surface under the mesh below which it is remarked, where it shall be covered."""
 
+UNSOUND = "unsound-quads"
+"""Code of the finding that M itself, not its control mesh, cannot be optimised."""
+
 _INFO, _WARNING, _ERROR = Severity.INFO, Severity.WARNING, Severity.ERROR
 
 _KNOWN: dict[str, tuple[Severity, float, str]] = {
@@ -105,7 +108,7 @@ def _chart_faults(made: gs.Quadrangulation) -> Iterator[Finding]:
     spoilt = _unsound(made.mesh)
     if spoilt is not None:
         where, sentence = spoilt.where or "mesh", _sentence(spoilt)
-        yield Finding("unsound-quads", _WARNING, where, 1.0, 0.0, "", sentence)
+        yield Finding(UNSOUND, _WARNING, where, 1.0, 0.0, "", sentence)
     if len(folded):
         yield Finding(
             "chart-flips",
@@ -115,7 +118,7 @@ def _chart_faults(made: gs.Quadrangulation) -> Iterator[Finding]:
             0.0,
             "triangles",
             f"{len(folded)} triangles of the chart are turned over; lines may miss each other "
-            "there. Ask for more quads.",
+            "there. Ask for another number of quads.",
         )
     if len(cones):
         yield Finding(
@@ -126,7 +129,7 @@ def _chart_faults(made: gs.Quadrangulation) -> Iterator[Finding]:
             0.0,
             "vertices",
             f"{len(cones)} points of the chart have another valence than the directions. Ask for "
-            "more quads.",
+            "another number of quads.",
         )
 
 
@@ -162,8 +165,9 @@ def _unsound(mesh: gs.QuadMesh) -> gs.MeshError | None:
 def _sentence(error: gs.GridshellError) -> str:
     value = "" if error.value is None else f": {error.value}"
     return (
-        f"{error.what}{value}. It cannot be optimised as it is. At the rim, keep the mesh inside "
-        "the surface; at a singular point of valence 2, cut a hole into the surface."
+        f"{error.what}{value}. The mesh cannot be optimised as it is, its control mesh perhaps. "
+        "At the rim, keep it inside the surface; at a singular point of valence 2, cut a hole "
+        "into the surface."
     )
 
 

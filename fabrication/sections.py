@@ -120,7 +120,7 @@ SurfaceSection = Annotated[
     | FileSurface,
     Field(discriminator="kind"),
 ]
-AnalyticSurface = (
+AnalyticSection = (
     EnneperSurface
     | CatenoidSurface
     | HelicoidSurface
@@ -257,7 +257,7 @@ class SheetSection(Section):
 class SurfaceSource:
     """A patch of an analytic surface."""
 
-    surface: AnalyticSurface
+    surface: AnalyticSection
     patch: PatchSection
 
 

@@ -17,7 +17,7 @@ from fabrication.errors import ProjectError
 from fabrication.remesh_settings import require_file, require_remeshable
 from fabrication.sections import (
     MOST_NODES,
-    AnalyticSurface,
+    AnalyticSection,
     AsymptoticPatchSection,
     MeshSection,
     PatchSection,
@@ -43,7 +43,7 @@ _SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
 }
 
 
-def surface_of(section: AnalyticSurface) -> gs.AnalyticSurface:
+def surface_of(section: AnalyticSection) -> gs.AnalyticSurface:
     """The surface of ``[surface]``."""
     sizes = section.model_dump()
     return _SURFACES[sizes.pop("kind")](**sizes)

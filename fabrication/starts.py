@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gridshell as gs
+from fabrication.remesh_checks import UNSOUND
 from fabrication.remesh_job import Remeshed, Wish, lay, read_wished
 from fabrication.sections import USUAL_QUADS, MeshSection, Project, RemeshSection, RemeshSource
 from fabrication.settings import patch_of, surface_of
@@ -75,7 +76,8 @@ def _remeshed(source: RemeshSource, folder: Path, stage: Stage) -> Start:
         raise _at("surface.unit", error) from None
     except gs.SettingError as error:
         raise _at(f"remesh.{error.where}", error) from None
-    return Start(control, found.made.reference, found)
+    about = tuple(f for f in found.findings if f.code != UNSOUND)  # C is judged when optimised
+    return Start(control, found.made.reference, replace(found, findings=about))
 
 
 def wish_of(section: RemeshSection) -> Wish:
