@@ -6,6 +6,8 @@ import numpy as np
 
 from gridshell.arrays import Indices
 from gridshell.field import FieldReport
+from gridshell.folding import collapsed
+from gridshell.mesh import QuadMesh
 from gridshell.remesh.remesh_report import Spread
 from gridshell.remesh.seamless import Seamless
 from gridshell.surface import Remark
@@ -17,12 +19,18 @@ _LARGEST_STRAY = 5.0
 
 
 def findings(
-    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int, singular: Indices
+    mesh: QuadMesh,
+    chart: Seamless,
+    about: FieldReport,
+    stray: Spread,
+    control_quads: int,
+    singular: Indices,
 ) -> list[Remark]:
     """Findings with a code, a sentence that says what to try, and the number that goes with it.
 
     Parameters
     ----------
+    mesh : the quad mesh M.
     stray : angles between the edges and the field, degrees.
     control_quads : faces of the control mesh, 0 where there is none.
     singular : (k,) vertices around which the field turns.
@@ -56,10 +64,21 @@ def findings(
         found.append(
             Remark(
                 "umbilic-hole",
-                f"{len(narrow)} singular points are of valence 2: the control mesh has a hole there, "
-                "as planar quads cannot go around them",
+                f"{len(narrow)} singular points are of valence 2: the control mesh has holes "
+                "there, as planar quads cannot go around them",
                 float(len(narrow)),
                 place(about.positions[narrow[0]]),
+            )
+        )
+    bad = np.flatnonzero(collapsed(mesh.vertices, mesh.quads, mesh.mean_edge))
+    if len(bad):
+        found.append(
+            Remark(
+                "concave-quads",
+                f"{len(bad)} quads are concave or slivers, as beside a vertex where two edges "
+                "meet; the control mesh may be sound all the same",
+                float(len(bad)),
+                place(mesh.vertices[mesh.quads[bad[0]]].mean(axis=0)),
             )
         )
     if about.infeasible_area > 0.0:

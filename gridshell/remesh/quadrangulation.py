@@ -259,7 +259,7 @@ def _report(
         integers=sum(len(i.integers) for i in integers),
         integers_exact=all(i.exact for i in integers),
         triangles=len(curved.mesh.triangles),
-        remarks=(*remarks, *findings(chart, about, stray, control_quads, singular)),
+        remarks=(*remarks, *findings(mesh, chart, about, stray, control_quads, singular)),
         seconds=seconds,
     )
 
