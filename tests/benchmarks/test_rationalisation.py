@@ -125,7 +125,7 @@ def test_the_trade_off_between_surface_and_net():
     [("freeform", 60, gs.Conjugate(radians(60.0))), ("dome", 90, gs.Principal())],
 )
 def test_planar_rhombi_on_a_given_surface(name, degrees, directions):
-    """Planarity, angle and rhombi at once: a held surface is traded for them, a let go one gives."""
+    """Planarity, angle and rhombi at once: a surface let go in time gives all, a held one none."""
     found = remeshed(name, directions, 860)
     control, size = found.control(), box(found)
     print(
