@@ -183,11 +183,9 @@ class _Work:
         signs = self.cut.signs
         d1, d2 = (_flat(angle) * signs[:, None] for angle in (field.first, field.second))
         found: list[Coordinate] = []
-        for lines, across in ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0))):
-            rise = 1.0 / (self.spacing * np.sin(field.angle))
-            if by_factor:
-                covector = across * rise[:, None]
-                rise = rise * integrating_factor(mesh, covector, self.cut.flips, self.engine)
+        pairs = ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0)))
+        rises = self._rises([across for _, across in pairs], by_factor)
+        for (lines, across), rise in zip(pairs, rises, strict=True):
             target = Target(lines, across, rise, weight, lams)
             unknowns = self.unknowns[len(found)]
             found.append(coordinate(mesh, unknowns, target, self.engine))
@@ -204,6 +202,16 @@ class _Work:
             cones,
             (found[0], found[1]),
         )
+
+    def _rises(self, across: list[Floats], by_factor: bool) -> list[Floats]:
+        """Derivatives wanted across both families, (f,) each, 1/mm; they make as many cells."""
+        mesh, sine = self.field.mesh, np.sin(self.field.angle)
+        rise = 1.0 / (self.spacing * sine)
+        if not by_factor:
+            return [rise, rise]
+        u, v = (integrating_factor(mesh, x * rise[:, None], self.engine) for x in across)
+        more = float(np.average(u * v, weights=mesh.areas / sine))
+        return [rise * factor / np.sqrt(more) for factor in (u, v)]
 
     def _wrong_cones(self, total: Floats) -> Indices:
         mesh = self.field.mesh

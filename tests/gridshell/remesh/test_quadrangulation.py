@@ -307,9 +307,16 @@ def test_findings_are_in_the_report(made):
     finding = next(r for r in half.remarks if r.code == "angle-infeasible")
     assert finding.value == pytest.approx(half.infeasible_area)
     assert "degrees" in finding.message
-    lost = made("ridge", Principal(), 300).report
-    assert {r.code for r in lost.remarks} & {"singular-point-lost"}
-    assert lost.wrong_cones > 0
+
+
+def test_no_singular_point_is_lost_where_directions_turn_abruptly(made):
+    """The chart folds at both points until the spacing follows the directions."""
+    result = made("ridge", Principal(), 300)
+    inner = ~result.mesh.on_boundary
+    assert result.mesh.valence[inner & (result.mesh.valence != 4)].tolist() == [6, 6]
+    assert result.report.flips == 0
+    assert result.report.remarks == ()
+    assert result.report.alignment_deg.p95 < 2.0
 
 
 def test_an_angle_that_has_no_effect_is_said(made):
