@@ -111,7 +111,7 @@ def run(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Do the whole way: net, lamellas, sheets, STEP, lists and report."""
+    """Do the whole way: net, lamellas or panels, sheets, STEP, lists and report."""
     from fabrication.project import read_project
 
     content = read_project(project)
@@ -175,32 +175,14 @@ def _run_with_progress(project: Any, out: Path, folder: Path, quiet: bool) -> di
 def _summary(report: dict[str, Any], out: Path) -> None:
     from rich.console import Console
 
-    from fabrication.export.words import plural
+    from fabrication.summary import summary_lines
 
     console = Console(highlight=False, soft_wrap=True)
-    built, net, closed = report["structure"], report["net"], report["closure"]
-    console.print(f"[bold]{_plain(report['name'])}[/bold]  {net['status']}")
-    angle = net["node_angle_deg"]
-    console.print(
-        f"  {plural(built['lamellas'], 'lamella')}, {plural(built['joints'], 'joint')}, "
-        f"{_length(built['total_length_m'])}, {_mass(built['mass_kg'])} on "
-        f"{plural(built['sheets'], 'sheet')}; "
-        f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees"
-    )
-    console.print(
-        f"  files close onto the design within {closed['max_mm']:.3f} mm, volumes within "
-        f"{closed['volume_ppm']:.1f} ppm; largest clash {report['fit']['clash_mm3']['max']:.1g} mm3"
-    )
+    console.print(f"[bold]{_plain(report['name'])}[/bold]  {report['net']['status']}")
+    for line in summary_lines(report):
+        console.print(f"  {line}")
     _print_findings(console, report["findings"])
     console.print(f"  {sum(report['timing'].values()):.1f} s; written to {_plain(str(out))}")
-
-
-def _length(metres: float) -> str:
-    return f"{metres:.1f} m" if metres >= 1.0 else f"{metres * 1e3:.0f} mm"
-
-
-def _mass(kilograms: float) -> str:
-    return f"{kilograms:.1f} kg" if kilograms >= 1.0 else f"{kilograms * 1e3:.3g} g"
 
 
 def _print_findings(console: Console, findings: list[dict[str, Any]]) -> None:

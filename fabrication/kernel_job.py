@@ -12,17 +12,69 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
+from fabrication.bodies import Bodies
 from fabrication.errors import KernelError
-from fabrication.export.step_reader import StepPart
 from fabrication.parts import FlatPart
 from fabrication.structures import Structure
 from gridshell import GridshellError
+
+Lap = Callable[[str], None]
+"""Ends a stage: its time is kept by its name."""
+
+
+class Work(Protocol):
+    """An order that can be sent to the process: plain data with one method."""
+
+    def do(self, step: Path, lap: Lap) -> tuple[Any, ...]:
+        """Make the solids, write them to *step*, and return what the file says of its parts."""
+
+
+@dataclass(frozen=True, eq=False)
+class LamellaWork:
+    """The bent and twisted strips of a structure, in an assembly called *name*."""
+
+    structure: Structure
+    parts: Sequence[FlatPart]
+    name: str
+
+    def do(self, step: Path, lap: Lap) -> tuple[Any, ...]:
+        """See :class:`Work`; returns ``StepPart``s."""
+        from fabrication.export.step import assembly, write_step
+        from fabrication.export.step_reader import read_step
+        from fabrication.solid import solids
+
+        bodies = solids(self.structure, self.parts)
+        lap("solids")
+        write_step(assembly(bodies, self.structure, name=self.name), step)
+        lap("STEP")
+        found = read_step(step)
+        lap("STEP read back")
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class BodiesWork:
+    """Prisms, in an assembly called *name*."""
+
+    bodies: Bodies
+    name: str
+
+    def do(self, step: Path, lap: Lap) -> tuple[Any, ...]:
+        """See :class:`Work`; returns ``StepPrism``s."""
+        from fabrication.export.step_bodies import write_bodies
+        from fabrication.export.step_prism_reader import read_prisms
+
+        write_bodies(self.bodies, step, name=self.name)
+        lap("solids and STEP")
+        found = read_prisms(step)
+        lap("STEP read back")
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +83,11 @@ class KernelResult:
 
     Parameters
     ----------
-    parts : the lamellas as the written STEP file has them.
+    parts : the parts as the written STEP file has them.
     seconds : time of each of its stages.
     """
 
-    parts: tuple[StepPart, ...]
+    parts: tuple[Any, ...]
     seconds: dict[str, float]
 
 
@@ -52,11 +104,9 @@ class Kernel:
             stderr=subprocess.PIPE,
         )
 
-    def order(
-        self, structure: Structure, parts: Sequence[FlatPart], *, name: str, step: Path
-    ) -> None:
-        """Have the solids of *parts* made and written to *step*; does not wait."""
-        self._order.write_bytes(pickle.dumps((structure, tuple(parts), name, step.absolute())))
+    def order(self, work: Work, step: Path) -> None:
+        """Have *work* done and written to *step*; does not wait."""
+        self._order.write_bytes(pickle.dumps((work, step.absolute())))
         with suppress(BrokenPipeError):  # a process that has ended is told by result()
             self._tell("go")
 
@@ -114,9 +164,8 @@ def _work(order: Path, wait: Any) -> KernelResult | GridshellError | None:
         seconds[stage] = round(time.perf_counter() - start - sum(seconds.values()), 3)
 
     try:
-        from fabrication.export.step import assembly, write_step
-        from fabrication.export.step_reader import read_step
-        from fabrication.solid import solids
+        import fabrication.export.step_bodies
+        import fabrication.solid  # noqa: F401 - both load the kernel
 
         lap("CAD kernel")
     except GridshellError as error:
@@ -124,14 +173,9 @@ def _work(order: Path, wait: Any) -> KernelResult | GridshellError | None:
     if not wait():
         return None
     try:
-        structure, parts, name, step = pickle.loads(order.read_bytes())
+        work, step = pickle.loads(order.read_bytes())
         lap("waiting")
-        bodies = solids(structure, parts)
-        lap("solids")
-        write_step(assembly(bodies, structure, name=name), step)
-        lap("STEP")
-        found = read_step(step)
-        lap("STEP read back")
+        found = work.do(step, lap)
     except GridshellError as error:
         return error
     return KernelResult(found, seconds)

@@ -16,12 +16,16 @@ from gridshell.arrays import Floats
 
 @dataclass(frozen=True)
 class Label:
-    """A text engraved on a part, centred on (x, y) in strip coordinates, mm."""
+    """A text engraved on a part, centred on (x, y) in the part's coordinates, mm.
+
+    *angle* turns it counter-clockwise, radians.
+    """
 
     text: str
     x: float
     y: float
     height: float
+    angle: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

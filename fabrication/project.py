@@ -1,8 +1,9 @@
 """The project file: read, checked and written; every error names its key.
 
 A project says *where* the net comes from (``[surface]`` with ``[patch]`` or, from a file, with
-``[remesh]``; or ``[mesh]``), *what* it must be (``[net]``) and *how* it is built (``[profile]``,
-``[joint]``, ``[sheet]``).
+``[remesh]``; or ``[mesh]``), *what* it must be (``[net]``) and *how* it is built: lamellas
+(``[profile]``, ``[joint]``, ``[facade]``) or panels (``[panels]``, ``[supports]``, ``[connector]``)
+cut from ``[sheet]`` and ``[panel_sheet]``.
 """
 
 from __future__ import annotations
@@ -17,21 +18,23 @@ from typing import Any, get_args
 from pydantic import ValidationError
 
 from fabrication.errors import ProjectError
-from fabrication.sections import (
+from fabrication.panel_sections import (
+    ConnectorSection,
+    FacadeSection,
+    PanelsSection,
+    SupportsSection,
+)
+from fabrication.panel_settings import require_panels
+from fabrication.section_types import MaterialSection, Section
+from fabrication.sections import NetSection, ProfileSection, Project, SheetSection, SlotSection
+from fabrication.settings import require_makeable
+from fabrication.source_sections import (
     GuideSection,
-    MaterialSection,
     MeshSection,
-    NetSection,
     PatchSection,
-    ProfileSection,
-    Project,
     RemeshSection,
-    Section,
-    SheetSection,
-    SlotSection,
     SurfaceSection,
 )
-from fabrication.settings import require_makeable
 
 
 def read_project(path: Path | str) -> Project:
@@ -60,6 +63,7 @@ def read_project(path: Path | str) -> Project:
     except ValidationError as error:
         raise _explained(path, error) from None
     require_makeable(project, path)
+    require_panels(project, path)
     return project
 
 
@@ -143,6 +147,14 @@ def _explained(path: Path, error: ValidationError) -> ProjectError:
         return ProjectError(f"A key has a wrong value{more}", where=where, value=value, limit=limit)
     if first["type"] == "missing":
         return ProjectError(f"A key is missing{more}", where=where, advice=f"add {key}")
+    if first["type"] == "foreign":
+        return ProjectError(
+            f"This setting does not belong here{more}",
+            where=where,
+            value=first["ctx"]["value"],
+            limit=first["ctx"]["limit"],
+            advice="leave it out",
+        )
     if first["type"] == "union_tag_invalid":
         return _unknown_choice(where, more, first["ctx"])
     if first["type"] == "union_tag_not_found":
@@ -180,6 +192,11 @@ def _sections() -> dict[str, type[Section]]:
         "joint": SlotSection,
         "sheet": SheetSection,
         "own material": MaterialSection,
+        "panels": PanelsSection,
+        "supports": SupportsSection,
+        "connector": ConnectorSection,
+        "facade": FacadeSection,
+        "panel_sheet": SheetSection,
     }
     for union in (SurfaceSection, PatchSection):
         section: type[Section]

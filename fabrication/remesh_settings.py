@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from fabrication.errors import ProjectError
-from fabrication.sections import RemeshSection, RemeshSource
+from fabrication.source_sections import RemeshSection, RemeshSource
 
 FORMATS = (
     *(".obj", ".ply", ".stl", ".glb", ".csv", ".txt", ".xyz"),
@@ -16,12 +16,13 @@ FORMATS = (
 _STATE_UNIT = (".step", ".stp", ".iges", ".igs")
 
 
-def require_remeshable(source: RemeshSource, path: Path) -> None:
+def require_remeshable(source: RemeshSource, path: Path, *, kind: str) -> None:
     """Refuse what can be told to fail before the surface is read.
 
     Parameters
     ----------
     path : the project file; the others are looked for beside it.
+    kind : of the net, asymptotic or planar.
 
     Raises
     ------
@@ -46,14 +47,22 @@ def require_remeshable(source: RemeshSource, path: Path) -> None:
     _require_consistent(source.remesh, path)
     for number, guide in enumerate(source.remesh.guides):
         require_file(guide.file, "guide", path, f"remesh.guides.{number}.file")
-    if source.remesh.directions != "asymptotic":
+    asymptotic = source.remesh.directions == "asymptotic"
+    if kind == "asymptotic" and not asymptotic:
         raise ProjectError(
             "Lamellas stand along asymptotic directions only",
             where=f"{path}, remesh.directions",
             value=repr(source.remesh.directions),
             limit="asymptotic",
-            advice="gridshell remesh for this mesh, then gridshell optimize --net planar for a "
-            "net of flat panels",
+            advice="net.kind = 'planar' with [panels] for a net of flat panels",
+        )
+    if kind == "planar" and asymptotic:
+        raise ProjectError(
+            "Flat panels stand along conjugate directions only",
+            where=f"{path}, remesh.directions",
+            value="'asymptotic'",
+            limit="principal, conjugate",
+            advice="'principal': at right angles support plates are flat",
         )
 
 

@@ -5,222 +5,53 @@ Lengths are mm and angles degrees here and nowhere below.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Discriminator,
-    Field,
-    Tag,
-    field_validator,
-    model_validator,
+from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from fabrication.panel_sections import (
+    ConnectorSection,
+    FacadeSection,
+    PanelsSection,
+    SupportsSection,
 )
-
-MOST_NODES = 100_000
-"""Nodes of the largest net that is tried, and quads of the largest mesh."""
-
-USUAL_QUADS = 500
-"""Of a mesh laid over a surface."""
-
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[Number, Field(gt=0.0, le=1e9)]
-Size = Annotated[Number, Field(ge=1e-3, le=1e7)]
-"""From a micrometre to ten kilometres, in mm."""
-Distance = Annotated[Number, Field(ge=0.0, le=1e7)]
-Parameter = Annotated[Number, Field(ge=-1e3, le=1e3)]
-Whole = Annotated[int, Field(strict=True)]
-Count = Annotated[Whole, Field(ge=2, le=MOST_NODES)]
-Range = tuple[Parameter, Parameter]
-UnitName = Literal["mm", "cm", "m", "inch", "foot"]
-
-
-class Section(BaseModel):
-    """A table of the file: only known keys, frozen."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
-
-
-class EnneperSurface(Section):
-    """Enneper's surface; *scale* mm per unit of its formula."""
-
-    kind: Literal["enneper"]
-    scale: Size
-
-
-class CatenoidSurface(Section):
-    """Catenoid with a waist of *radius* mm."""
-
-    kind: Literal["catenoid"]
-    radius: Size
-
-
-class HelicoidSurface(Section):
-    """Helicoid rising by *pitch* mm per turn."""
-
-    kind: Literal["helicoid"]
-    pitch: Size
-
-
-class HyparSurface(Section):
-    """Hyperbolic paraboloid z = x y / scale."""
-
-    kind: Literal["hypar"]
-    scale: Size
-
-
-class HyperboloidSurface(Section):
-    """Hyperboloid of one sheet: waist *radius*, z = *height* times tan v."""
-
-    kind: Literal["hyperboloid"]
-    radius: Size
-    height: Size
-
-
-class ScherkSurface(Section):
-    """Scherk's surface; *scale* mm per unit of its formula."""
-
-    kind: Literal["scherk"]
-    scale: Size
-
-
-class TorusSurface(Section):
-    """Torus; only its inner half carries asymptotic nets."""
-
-    kind: Literal["torus"]
-    major: Size
-    minor: Size
-
-
-class SphereSurface(Section):
-    """Sphere: positively curved, no asymptotic net."""
-
-    kind: Literal["sphere"]
-    radius: Size
-
-
-class FileSurface(Section):
-    """A surface from a file: triangles, B-rep faces, or boundary curves of a minimal surface."""
-
-    kind: Literal["imported"] = "imported"
-    file: str
-    unit: Annotated[UnitName | None, Field(description="the one a STEP or IGES file states")] = None
-
-
-SurfaceSection = Annotated[
-    EnneperSurface
-    | CatenoidSurface
-    | HelicoidSurface
-    | HyparSurface
-    | HyperboloidSurface
-    | ScherkSurface
-    | TorusSurface
-    | SphereSurface
-    | FileSurface,
-    Field(discriminator="kind"),
-]
-AnalyticSection = (
-    EnneperSurface
-    | CatenoidSurface
-    | HelicoidSurface
-    | HyparSurface
-    | HyperboloidSurface
-    | ScherkSurface
-    | TorusSurface
-    | SphereSurface
+from fabrication.section_types import (
+    Distance,
+    Number,
+    Positive,
+    Section,
+    SheetMetal,
+    Size,
+    Whole,
 )
-
-
-class AsymptoticPatchSection(Section):
-    """Lamellas along the asymptotic parameters p and q, from edge to edge of the patch."""
-
-    layout: Literal["asymptotic"]
-    p: Range
-    q: Range
-    lamellas: tuple[Count, Count]
-
-
-class BisectingPatchSection(Section):
-    """Control quads along u = (p + q) / 2 and v = (p - q) / 2; lamellas cross them diagonally.
-
-    Without u the patch closes into a ring.
-    """
-
-    layout: Literal["bisecting"]
-    v: Range
-    cells: Count
-    u: Annotated[Range | None, Field(description="all around")] = None
-
-
-PatchSection = Annotated[
-    AsymptoticPatchSection | BisectingPatchSection, Field(discriminator="layout")
-]
-
-
-class MeshSection(Section):
-    """A quad mesh from a file: its edges or its diagonals become the lamellas."""
-
-    file: str
-    unit: UnitName
-    lamellas_along: Literal["edges", "diagonals"]
-
-
-class GuideSection(Section):
-    """Lines of a file that the lines of one family shall follow."""
-
-    file: str
-    family: Annotated[Whole, Field(ge=1, le=2)] = 1
-
-
-class RemeshSection(Section):
-    """The quad mesh that is laid over a surface from a file; its edges become the lamellas."""
-
-    directions: Literal["asymptotic", "principal", "conjugate"]
-    angle: Annotated[
-        Annotated[Number, Field(gt=0.0, lt=180.0)] | None,
-        Field(description="of conjugate directions only"),
-    ] = None
-    hand: Annotated[
-        Literal["left", "right"] | None, Field(description="of conjugate directions only")
-    ] = None
-    infeasible: Annotated[
-        Literal["widen", "clamp", "refuse"] | None,
-        Field(description="of conjugate directions only"),
-    ] = None
-    quads: Annotated[
-        Annotated[Whole, Field(ge=1, le=MOST_NODES)] | None,
-        Field(description=f"{USUAL_QUADS}, unless edge says otherwise"),
-    ] = None
-    edge: Annotated[Size | None, Field(description="as long as the number of quads makes it")] = (
-        None
-    )
-    extent: Literal["inside", "cover", "trimmed"] = "inside"
-    guides: list[GuideSection] = Field(default_factory=list)
+from fabrication.source_sections import (
+    FileSurface,
+    MeshSection,
+    PatchSection,
+    RemeshSection,
+    RemeshSource,
+    SurfaceSection,
+    SurfaceSource,
+)
 
 
 class NetSection(Section):
     """What the net must be and what holds its shape meanwhile."""
 
-    kind: Literal["asymptotic"] = "asymptotic"
+    kind: Literal["asymptotic", "planar"] = "asymptotic"
     angle: Annotated[
         Annotated[Number, Field(gt=0.0, lt=180.0)] | None,
         Field(description="the angles of the net it begins with"),
     ] = None
+    rhombus: bool = False
+    square: bool = False
     anchor: Literal["free", "boundary-pinned", "boundary-glide"]
     keep_to_surface: bool = True
-    skin: Literal["D1", "D2"] = "D1"
+    skin: Literal["D1", "D2", "P"] = "D1"
     steps: Annotated[Whole, Field(ge=1, le=10_000)] = 30
     tolerance: Positive = 1e-9
-
-
-class MaterialSection(Section):
-    """A material of one's own: N/mm2 and kg/m3."""
-
-    name: str
-    modulus: Positive
-    strength: Positive
-    density: Positive
 
 
 class ProfileSection(Section):
@@ -228,11 +59,7 @@ class ProfileSection(Section):
 
     width: Size
     thickness: Size
-    material: Annotated[
-        Annotated[Literal["S235", "stainless", "birch-ply"], Tag("known material")]
-        | Annotated[MaterialSection, Tag("own material")],
-        Discriminator(lambda value: f"{'own' if isinstance(value, dict) else 'known'} material"),
-    ]
+    material: SheetMetal
     overhang: Annotated[Size | None, Field(description="half the width")] = None
 
 
@@ -253,22 +80,6 @@ class SheetSection(Section):
     gap: Distance = 10.0
 
 
-@dataclass(frozen=True)
-class SurfaceSource:
-    """A patch of an analytic surface."""
-
-    surface: AnalyticSection
-    patch: PatchSection
-
-
-@dataclass(frozen=True)
-class RemeshSource:
-    """A surface from a file and the quad mesh that is laid over it."""
-
-    surface: FileSurface
-    remesh: RemeshSection
-
-
 class Project(Section):
     """A whole project."""
 
@@ -278,9 +89,14 @@ class Project(Section):
     remesh: RemeshSection | None = None
     mesh: MeshSection | None = None
     net: NetSection
-    profile: ProfileSection
-    joint: SlotSection
+    profile: ProfileSection | None = None
+    joint: SlotSection | None = None
+    facade: FacadeSection | None = None
+    panels: PanelsSection | None = None
+    supports: SupportsSection | None = None
+    connector: ConnectorSection | None = None
     sheet: SheetSection
+    panel_sheet: SheetSection | None = None
 
     @property
     def source(self) -> MeshSection | SurfaceSource | RemeshSource:
@@ -322,3 +138,54 @@ class Project(Section):
     def _one_source(self) -> Project:
         _ = self.source
         return self
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Project:
+        mistakes = [*_foreign(self), *_missing(self)]
+        if mistakes:
+            raise ValidationError.from_exception_data("Project", mistakes)
+        return self
+
+
+_SECTIONS = {
+    "asymptotic": ("profile", "joint", "facade"),
+    "planar": ("panels", "supports", "connector"),
+}
+_NEEDED = {"asymptotic": ("profile", "joint"), "planar": ("panels",)}
+_ALONG = {"asymptotic": "lamellas_along", "planar": "panels_along"}
+
+
+def _foreign(project: Project) -> Iterator[InitErrorDetails]:
+    """Settings that the project's kind of net does not have."""
+    kind = project.net.kind
+    other = "planar" if kind == "asymptotic" else "asymptotic"
+    for name in _SECTIONS[other]:
+        if getattr(project, name) is not None:
+            yield _mistake((name,), f"net.kind = '{kind}'", f"net.kind = '{other}' only")
+    if project.panel_sheet is not None and project.panels is None and project.facade is None:
+        yield _mistake(("panel_sheet",), "no panels", "projects with [panels] or [facade]")
+    if project.connector is not None and project.supports is None:
+        yield _mistake(("connector",), "no [supports]", "projects with [supports]")
+    if project.mesh is not None and getattr(project.mesh, _ALONG[other]) is not None:
+        yield _mistake(("mesh", _ALONG[other]), f"net.kind = '{kind}'", f"mesh.{_ALONG[kind]}")
+    if kind == "planar":
+        return
+    for name in ("rhombus", "square"):
+        if getattr(project.net, name):
+            yield _mistake(("net", name), "net.kind = 'asymptotic'", "net.kind = 'planar' only")
+    if project.net.skin == "P":
+        yield _mistake(("net", "skin"), "'P' with net.kind = 'asymptotic'", "D1, D2")
+
+
+def _missing(project: Project) -> Iterator[InitErrorDetails]:
+    kind = project.net.kind
+    for name in _NEEDED[kind]:
+        if getattr(project, name) is None:
+            yield InitErrorDetails(type="missing", loc=(name,), input=None)
+    if project.mesh is not None and project.mesh.along is None:
+        yield InitErrorDetails(type="missing", loc=("mesh", _ALONG[kind]), input=None)
+
+
+def _mistake(location: tuple[str, ...], value: str, limit: str) -> InitErrorDetails:
+    kind = PydanticCustomError("foreign", "{value}, not {limit}", {"value": value, "limit": limit})
+    return InitErrorDetails(type=kind, loc=location, input=None)

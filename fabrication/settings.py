@@ -5,8 +5,7 @@ Everything here is cheap: neither the CAD kernel nor scipy is loaded, no net is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,15 +13,16 @@ import numpy as np
 import fabrication.stock as stock
 import gridshell as gs
 from fabrication.errors import ProjectError
+from fabrication.placing import placed
 from fabrication.remesh_settings import require_file, require_remeshable
-from fabrication.sections import (
-    MOST_NODES,
+from fabrication.section_types import MOST_NODES, MaterialSection
+from fabrication.sections import ProfileSection, Project, SheetSection, SlotSection
+from fabrication.source_sections import (
     AnalyticSection,
     AsymptoticPatchSection,
+    ConjugatePatchSection,
     MeshSection,
     PatchSection,
-    ProfileSection,
-    Project,
     RemeshSource,
     SurfaceSource,
 )
@@ -53,20 +53,30 @@ def patch_of(section: PatchSection) -> gs.Patch:
     """The layout of ``[patch]``."""
     if isinstance(section, AsymptoticPatchSection):
         return gs.AsymptoticPatch(section.p, section.q, section.lamellas)
+    if isinstance(section, ConjugatePatchSection):
+        return gs.ConjugatePatch(section.v, section.panels, section.u)
     return gs.BisectingPatch(section.v, section.cells, section.u)
 
 
 def profile_of(section: ProfileSection) -> stock.Profile:
     """The strip of ``[profile]``."""
-    if isinstance(section.material, str):
-        material = stock.MATERIALS[section.material]
-    else:
-        material = stock.Material(**section.material.model_dump())
-    return stock.Profile(section.width, section.thickness, material)
+    return stock.Profile(section.width, section.thickness, material_of(section.material))
+
+
+def material_of(chosen: str | MaterialSection) -> stock.Material:
+    """A material by its name, or one of the project's own."""
+    if isinstance(chosen, str):
+        return stock.MATERIALS[chosen]
+    return stock.Material(**chosen.model_dump())
+
+
+def sheet_of(section: SheetSection) -> stock.Sheet:
+    """The raw sheet of ``[sheet]`` or ``[panel_sheet]``."""
+    return stock.Sheet(**section.model_dump())
 
 
 def require_makeable(project: Project, path: Path) -> None:
-    """Refuse what can be told to fail before a net is made.
+    """Refuse what can be told to fail before a net is made, of the source and of lamellas.
 
     Parameters
     ----------
@@ -77,12 +87,29 @@ def require_makeable(project: Project, path: Path) -> None:
     ProjectError
         Naming the file and the key.
     """
-    with _placed(path, "profile"):
-        profile = profile_of(project.profile)
-    with _placed(path, "joint"):
-        stock.require_web(profile, project.joint.depth_clearance)
-    with _placed(path, "sheet"):
-        sheet = stock.Sheet(**project.sheet.model_dump())
+    with placed(path, "sheet"):
+        sheet = sheet_of(project.sheet)
+    if project.panel_sheet is not None:
+        with placed(path, "panel_sheet"):
+            sheet_of(project.panel_sheet)
+    if project.profile is not None and project.joint is not None:
+        _require_strips(project.profile, project.joint, sheet, path)
+    source = project.source
+    if isinstance(source, MeshSection):
+        require_file(source.file, "mesh", path, "mesh.file")
+    elif isinstance(source, RemeshSource):
+        require_remeshable(source, path, kind=project.net.kind)
+    else:
+        _require_patch(source, path, planar=project.net.kind == "planar")
+
+
+def _require_strips(
+    section: ProfileSection, joint: SlotSection, sheet: stock.Sheet, path: Path
+) -> None:
+    with placed(path, "profile"):
+        profile = profile_of(section)
+    with placed(path, "joint"):
+        stock.require_web(profile, joint.depth_clearance)
     room = sheet.width - 2.0 * sheet.margin
     if profile.width > room:
         raise ProjectError(
@@ -92,21 +119,22 @@ def require_makeable(project: Project, path: Path) -> None:
             limit=f"{room:g} mm between the sheet's margins",
             advice="a wider sheet, or a narrower strip",
         )
-    source = project.source
-    if isinstance(source, MeshSection):
-        require_file(source.file, "mesh", path, "mesh.file")
-    elif isinstance(source, RemeshSource):
-        require_remeshable(source, path)
-    else:
-        _require_patch(source, path)
 
 
-def _require_patch(source: SurfaceSource, path: Path) -> None:
-    with _placed(path, "surface"):
+def _require_patch(source: SurfaceSource, path: Path, *, planar: bool) -> None:
+    layouts = ("conjugate",) if planar else ("asymptotic", "bisecting")
+    if source.patch.layout not in layouts:
+        raise ProjectError(
+            "This layout belongs to another kind of net",
+            where=f"{path}, patch.layout",
+            value=f"{source.patch.layout!r} with {'a planar' if planar else 'an asymptotic'} net",
+            limit=", ".join(layouts),
+        )
+    with placed(path, "surface"):
         surface = surface_of(source.surface)
-    with _placed(path, "patch"):
+    with placed(path, "patch"):
         patch = patch_of(source.patch)
-    if isinstance(patch, gs.BisectingPatch) and patch.u is None and surface.period_u is None:
+    if getattr(patch, "u", ()) is None and surface.period_u is None:
         raise ProjectError(
             "This surface does not close into a ring",
             where=f"{path}, patch.u",
@@ -117,8 +145,11 @@ def _require_patch(source: SurfaceSource, path: Path) -> None:
     if isinstance(surface, gs.Torus):
         return  # its elliptic functions are scipy's
     u, v = _corners(surface, patch)
-    with _placed(path, "patch"), np.errstate(all="ignore"):
-        surface.require_hyperbolic(u, v)
+    with placed(path, "patch"), np.errstate(all="ignore"):
+        if planar:
+            surface.check(u, v)
+        else:
+            surface.require_hyperbolic(u, v)
         far = float(np.abs(surface.point(u, v)).max())
     if not far <= LARGEST:
         raise ProjectError(
@@ -133,6 +164,8 @@ def _require_patch(source: SurfaceSource, path: Path) -> None:
 def _require_count(surface: gs.AnalyticSurface, patch: gs.Patch, path: Path) -> None:
     if isinstance(patch, gs.AsymptoticPatch):
         key, value, nodes = "lamellas", list(patch.lamellas), float(np.prod(patch.lamellas))
+    elif isinstance(patch, gs.ConjugatePatch):
+        key, value, nodes = "panels", list(patch.panels), float(np.prod(patch.panels))
     else:
         first, last = patch.u or (0.0, surface.period_u or 0.0)
         across = max(2.0, (patch.v[1] - patch.v[0]) * patch.cells / (last - first))
@@ -159,19 +192,3 @@ def _corners(surface: gs.AnalyticSurface, patch: gs.Patch) -> tuple[Floats, Floa
 def _rectangle(first: tuple[float, float], second: tuple[float, float]) -> tuple[Floats, Floats]:
     a, b = np.meshgrid(first, second)
     return a.ravel(), b.ravel()
-
-
-@contextmanager
-def _placed(path: Path, section: str) -> Iterator[None]:
-    """Add the file and the section to the place an error names."""
-    try:
-        yield
-    except gs.InputError as error:
-        at = error.where or ""
-        raise ProjectError(
-            error.what,
-            where=f"{path}, {section}.{at}" if at.isidentifier() else f"{path}, {section}: {at}",
-            value=error.value,
-            limit=error.limit,
-            advice=error.advice,
-        ) from None

@@ -53,7 +53,7 @@ except ImportError as error:  # pragma: no cover - depends on the machine
         advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
     ) from error
 
-_KERNEL_ERRORS = tuple(
+KERNEL_ERRORS = tuple(
     kind
     for kind in vars(Standard).values()
     if isinstance(kind, type) and issubclass(kind, Exception)
@@ -91,7 +91,7 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
     """
     try:
         solid = _Builder(strip_sides(lamella, part), part.thickness).solid(part.outline)
-    except _KERNEL_ERRORS as error:
+    except KERNEL_ERRORS as error:
         raise KernelError(
             "The kernel cannot make a lamella's solid", where=lamella.mark, value=str(error)
         ) from error

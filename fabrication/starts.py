@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
+from math import radians
 from pathlib import Path
 
 import gridshell as gs
 from fabrication.remesh_checks import CONCAVE
-from fabrication.remesh_job import Remeshed, Wish, lay, read_wished
-from fabrication.sections import USUAL_QUADS, MeshSection, Project, RemeshSection, RemeshSource
+from fabrication.remesh_job import GuideFile, Remeshed, Wish, lay, read_wished
+from fabrication.sections import Project
 from fabrication.settings import patch_of, surface_of
+from fabrication.source_sections import USUAL_QUADS, MeshSection, RemeshSection, RemeshSource
 
 Stage = Callable[[str], AbstractContextManager[None]]
 """Announces a stage and keeps its time."""
@@ -48,24 +50,24 @@ def start(project: Project, folder: Path, stage: Stage) -> Start:
         return _remeshed(source, folder, stage)
     with stage("start mesh"):
         if isinstance(source, MeshSection):
-            return _of_mesh(source, folder)
+            return _of_mesh(source, folder, planar=project.net.kind == "planar")
         surface = surface_of(source.surface)
         return Start(gs.control_patch(surface, patch_of(source.patch)), surface)
 
 
-def _of_mesh(section: MeshSection, folder: Path) -> Start:
+def _of_mesh(section: MeshSection, folder: Path, *, planar: bool) -> Start:
     mesh = gs.read_obj(folder / section.file, unit=gs.Unit.named(section.unit))
-    along_edges = section.lamellas_along == "edges"
-    control = gs.control_mesh(mesh) if along_edges else gs.as_control_mesh(mesh)
+    control = gs.control_mesh(mesh) if section.along == "edges" else gs.as_control_mesh(mesh)
     gs.require_sound(mesh)
-    gs.require_hyperbolic(control.mesh)
+    if not planar:
+        gs.require_hyperbolic(control.mesh)
     return Start(control, gs.TriangulatedSurface.of_quads(mesh.vertices, mesh.quads))
 
 
 def _remeshed(source: RemeshSource, folder: Path, stage: Stage) -> Start:
     named = source.surface.unit
     unit = None if named is None else gs.Unit.named(named)
-    wish = wish_of(source.remesh)
+    wish = wish_of(source.remesh, folder)
     try:
         with stage("surface"):
             surface = read_wished(folder / source.surface.file, unit, wish)
@@ -80,14 +82,25 @@ def _remeshed(source: RemeshSource, folder: Path, stage: Stage) -> Start:
     return Start(control, found.made.reference, replace(found, findings=about))
 
 
-def wish_of(section: RemeshSection) -> Wish:
-    """The mesh that ``[remesh]`` asks for: asymptotic, as lamellas need it."""
+def wish_of(section: RemeshSection, folder: Path = Path()) -> Wish:
+    """The mesh that ``[remesh]`` asks for; guide lines are looked for in *folder*."""
     usual = USUAL_QUADS if section.edge is None else None
     return Wish(
-        directions=gs.Asymptotic(),
+        directions=_directions(section),
         quads=section.quads or usual,
         edge=section.edge,
         extent=gs.Extent[section.extent.upper()],
+        guides=tuple(GuideFile(folder / guide.file, guide.family) for guide in section.guides),
+    )
+
+
+def _directions(section: RemeshSection) -> gs.Directions:
+    if section.angle is None:
+        return gs.Asymptotic() if section.directions == "asymptotic" else gs.Principal()
+    return gs.Conjugate(
+        radians(section.angle),
+        gs.Hand[(section.hand or "right").upper()],
+        gs.Infeasible[(section.infeasible or "widen").upper()],
     )
 
 

@@ -60,7 +60,7 @@ BIRCH_PLY = Material("birch-ply", modulus=10_000.0, strength=40.0, density=680.0
 GLASS = Material("glass", modulus=70_000.0, strength=45.0, density=2500.0)
 """Float glass, EN 572-1: characteristic bending strength 45 N/mm2, before any safety factor."""
 
-MATERIALS = {material.name: material for material in (S235, STAINLESS, BIRCH_PLY)}
+MATERIALS = {material.name: material for material in (S235, STAINLESS, BIRCH_PLY, GLASS)}
 
 
 @dataclass(frozen=True)

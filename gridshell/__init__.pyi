@@ -21,6 +21,7 @@ from .coarse_to_fine import coarser as coarser
 from .coarse_to_fine import finer as finer
 from .coarse_to_fine import optimize_coarse_to_fine as optimize_coarse_to_fine
 from .conditions import EdgeLengths as EdgeLengths
+from .conditions import FlatRim as FlatRim
 from .conditions import MirrorPlane as MirrorPlane
 from .curvature import (
     principal_curvatures as principal_curvatures,
@@ -171,6 +172,9 @@ from .patch import (
 )
 from .patch import (
     BisectingPatch as BisectingPatch,
+)
+from .patch import (
+    ConjugatePatch as ConjugatePatch,
 )
 from .patch import (
     Patch as Patch,

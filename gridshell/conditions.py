@@ -8,9 +8,9 @@ from typing import Protocol
 import numpy as np
 
 from gridshell.arrays import Floats, Indices, frozen, unit
-from gridshell.constraints import EdgeLength, Symmetry
+from gridshell.constraints import EdgeLength, Symmetry, planar_faces
 from gridshell.errors import SettingError
-from gridshell.mesh import position
+from gridshell.mesh import edge_stars, position
 from gridshell.pose import Pose
 from gridshell.solve import Term, Weight
 
@@ -65,6 +65,26 @@ class EdgeLengths:
         return Term(
             "edge length", self.weight, EdgeLength(self.edges, self.lengths / pose.scale), goal=True
         )
+
+
+@dataclass(frozen=True)
+class FlatRim:
+    """The neighbours of every vertex lie in a plane where its ring is open, too.
+
+    At a ragged rim a vertex may have three quads and four neighbours that bound no white face. Its
+    node axis is the normal of their plane; unless they have one, support plates there are not flat.
+    """
+
+    weight: Weight = field(default=Weight(1.0))
+
+    def term(self, pose: Pose) -> Term:
+        """Any four neighbours in a row; there may be none."""
+        stars = edge_stars(pose.control.mesh)
+        rows = [np.empty((0, 4), dtype=np.int64)]
+        for count in range(4, int(stars.count.max(initial=0)) + 1):
+            ring = stars.spokes[~stars.closed & (stars.count == count), :count]
+            rows += [ring[:, i : i + 4] for i in range(count - 3)]
+        return Term("flat rim", self.weight, planar_faces(np.concatenate(rows)), goal=True)
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,7 +86,39 @@ class BisectingPatch:
             )
 
 
-Patch = AsymptoticPatch | BisectingPatch
+@dataclass(frozen=True)
+class ConjugatePatch:
+    """Panels along the parameters u and v, for nets of planar quads.
+
+    The lines of u and v are conjugate on every surface of this package: they bisect the asymptotic
+    parameters, and on surfaces of revolution they are the principal lines.
+
+    Parameters
+    ----------
+    v : first and last value across.
+    panels : of D1 along u and across.
+    u : first and last value along; None closes the ring over a full turn.
+
+    Raises
+    ------
+    SettingError
+        For an empty range, fewer than two panels, or fewer than three around a ring.
+    """
+
+    v: Range
+    panels: tuple[int, int]
+    u: Range | None = None
+
+    def __post_init__(self) -> None:
+        if self.u is not None:
+            _check_range("u", self.u)
+        _check_range("v", self.v)
+        _check_counts("panels", self.panels, 2)
+        if self.u is None:
+            _check_counts("panels", self.panels[:1], 3)
+
+
+Patch = AsymptoticPatch | BisectingPatch | ConjugatePatch
 
 
 def control_patch(surface: AnalyticSurface, patch: Patch) -> ControlMesh:
@@ -95,12 +127,14 @@ def control_patch(surface: AnalyticSurface, patch: Patch) -> ControlMesh:
     Raises
     ------
     NotHyperbolicError
-        Where the Gaussian curvature is not negative: no asymptotic directions.
+        Where the Gaussian curvature is not negative, of layouts along asymptotic directions.
     SettingError
         Where the surface's formula does not reach, or a ring is asked of an open surface.
     """
     if isinstance(patch, AsymptoticPatch):
         return _asymptotic(surface, patch)
+    if isinstance(patch, ConjugatePatch):
+        return _conjugate(surface, patch)
     return _bisecting(surface, patch)
 
 
@@ -129,6 +163,20 @@ def _bisecting(surface: AnalyticSurface, patch: BisectingPatch) -> ControlMesh:
     u, v = np.meshgrid(u_line, v_line, indexing="ij")
     vertices = _vertices(surface, u, v)
     return as_control_mesh(QuadMesh(vertices, grid_quads(patch.cells, across, ring=ring)))
+
+
+def _conjugate(surface: AnalyticSurface, patch: ConjugatePatch) -> ControlMesh:
+    """M has two steps per panel and half a panel of rim, but none around a ring."""
+    ring, (along, across) = patch.u is None, patch.panels
+    if patch.u is None:
+        u_line = _full_turn(surface) * np.arange(2 * along) / (2 * along)
+    else:
+        u_line = _half_steps(patch.u, along + 1)
+    u, v = np.meshgrid(u_line, _half_steps(patch.v, across + 1), indexing="ij")
+    surface.check(u.ravel(), v.ravel())
+    vertices = surface.point(u.ravel(), v.ravel())
+    quads = grid_quads(len(u_line) - (not ring), 2 * (across + 1), ring=ring)
+    return control_mesh(QuadMesh(vertices, quads))
 
 
 def _full_turn(surface: AnalyticSurface) -> float:

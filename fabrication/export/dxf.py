@@ -9,7 +9,8 @@ the outline's first corner.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,13 +38,21 @@ _APPLICATION = "GRIDSHELL"
 
 
 def write_dxf(
-    sheets: Sequence[NestedSheet], folder: Path | str, *, name: str = "", material: str = ""
+    sheets: Sequence[NestedSheet],
+    folder: Path | str,
+    *,
+    name: str = "",
+    material: str = "",
+    prefix: str = "sheet",
+    alike: Mapping[str, str] | None = None,
 ) -> list[Path]:
     """Write ``sheet-01.dxf``, ... into *folder* and return their paths.
 
     Parameters
     ----------
     name, material : of the project and of the sheets, for the title; left out where empty.
+    prefix : of the files' names: what the sheets hold.
+    alike : group of every mark; how many parts of a group lie on a sheet is then told below it.
 
     Raises
     ------
@@ -57,9 +66,9 @@ def write_dxf(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for nested in sheets:
-            path = folder / f"sheet-{nested.number:0{digits}d}.dxf"
+            path = folder / f"{prefix}-{nested.number:0{digits}d}.dxf"
             title = _title(nested, len(sheets), name, material)
-            _document(nested, title, font).saveas(path)
+            _document(nested, title, _quantities(nested, alike), font).saveas(path)
             paths.append(path)
     except OSError as error:
         raise OutputError(
@@ -82,7 +91,19 @@ def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
     return "  |  ".join(piece for piece in pieces if piece)
 
 
-def _document(nested: NestedSheet, title: str, font: _StrokeFont) -> Drawing:
+def _quantities(nested: NestedSheet, alike: Mapping[str, str] | None) -> str:
+    """How many parts of each group lie on a sheet, where there are equal ones."""
+    if alike is None:
+        return ""
+    counts = Counter(alike[placement.part.mark] for placement in nested.placements)
+    several = [f"{count} x {group}" for group, count in counts.most_common() if count > 1]
+    single = sum(count == 1 for count in counts.values())
+    if not several:
+        return "no two parts alike"
+    return "alike: " + ", ".join(several) + (f"; single: {single}" if single else "")
+
+
+def _document(nested: NestedSheet, title: str, below: str, font: _StrokeFont) -> Drawing:
     document = new("R2010", units=units.MM)
     document.appids.add(_APPLICATION)
     for name, colour in _LAYERS.items():
@@ -93,7 +114,7 @@ def _document(nested: NestedSheet, title: str, font: _StrokeFont) -> Drawing:
     outer: list[DXFGraphic] = [
         space.add_lwpolyline(corners, close=True, dxfattribs={"layer": SHEET})
     ]
-    outer += _texts(space, nested, title)
+    outer += _texts(space, nested, title, below)
     for placement in nested.placements:
         _draw(space, placement, font)
     extents = bbox.extents(outer)
@@ -101,7 +122,7 @@ def _document(nested: NestedSheet, title: str, font: _StrokeFont) -> Drawing:
     return document
 
 
-def _texts(space: Modelspace, nested: NestedSheet, title: str) -> list[Text]:
+def _texts(space: Modelspace, nested: NestedSheet, title: str, below: str) -> list[Text]:
     """The title above the sheet, and left of every row the marks of its parts in their order."""
     height = nested.sheet.width / 40.0
     rows: dict[float, list[Placement]] = {}
@@ -110,6 +131,10 @@ def _texts(space: Modelspace, nested: NestedSheet, title: str) -> list[Text]:
     above = space.add_text(title, height=height, dxfattribs={"layer": TEXT})
     above.set_placement((0.0, nested.sheet.width + height), align=TextEntityAlignment.LEFT)
     texts = [above]
+    if below:
+        under = space.add_text(below, height=height / 2.0, dxfattribs={"layer": TEXT})
+        under.set_placement((0.0, -height), align=TextEntityAlignment.LEFT)
+        texts.append(under)
     for y, row in rows.items():
         width = row[0].part.width
         marks = ", ".join(p.part.mark for p in sorted(row, key=lambda p: p.x))
@@ -145,7 +170,9 @@ class _StrokeFont:
         if label.text not in self._cache:
             self._cache[label.text] = self._centred(label.text)
         here = np.array([label.x, label.y])
-        return [stroke * label.height + here for stroke in self._cache[label.text]]
+        c, s = np.cos(label.angle), np.sin(label.angle)
+        turn = label.height * np.array([[c, s], [-s, c]])
+        return [stroke @ turn + here for stroke in self._cache[label.text]]
 
     def _centred(self, text: str) -> list[Floats]:
         strokes = [np.array(s, dtype=np.float64) for s in self._font.strokes_for_text(text)]

@@ -62,26 +62,22 @@ def write_report(
     OutputError
         When the file cannot be written.
     """
-    level, verdict = _verdict(report.get("findings"))
-    page = _template().render(
+    page = shared(
+        "report.html",
         name=name,
         report=report,
-        level=level,
-        verdict=verdict,
-        groups=_groups(report.get("findings") or ()),
+        pictures=pictures,
+        figure=shell_figure(structure, parts),
         masses=[mass(part, structure.profile.material) for part in parts],
         sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
         clearance=clearance,
-        pictures=[{**picture, "svg": Markup(picture["svg"])} for picture in pictures],
         structure=structure,
         parts=parts,
         families=[sum(lamella.family == f for lamella in structure.lamellas) for f in (1, 2)],
         size=np.ptp([node.position for node in structure.nodes], axis=0) / 1e3,
         colours={family: css(colour) for family, colour in FAMILY_COLOURS.items()},
         drawing=_drawing(max(parts, key=lambda part: round(part.length, 1))),
-        figure=Markup(shell_figure(structure, parts).to_json().replace("<", "\\u003c")),
-        plotly=Markup(get_plotlyjs()),
     )
     try:
         Path(path).write_text(page, encoding="utf-8")
@@ -91,7 +87,37 @@ def write_report(
         ) from None
 
 
-def _template() -> Any:
+def shared(
+    template: str,
+    *,
+    name: str,
+    report: Mapping[str, Any],
+    pictures: Sequence[Mapping[str, Any]],
+    figure: Any,
+    **more: Any,
+) -> str:
+    """A report's page: *template* with what all reports share, and *more* of its own.
+
+    Parameters
+    ----------
+    figure : plotly's, of the 3D view.
+    """
+    level, verdict = _verdict(report.get("findings"))
+    page: str = _template(template).render(
+        name=name,
+        report=report,
+        level=level,
+        verdict=verdict,
+        groups=_groups(report.get("findings") or ()),
+        pictures=[{**picture, "svg": Markup(picture["svg"])} for picture in pictures],
+        figure=Markup(figure.to_json().replace("<", "\\u003c")),
+        plotly=Markup(get_plotlyjs()),
+        **more,
+    )
+    return page
+
+
+def _template(name: str) -> Any:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -100,7 +126,7 @@ def _template() -> Any:
         lstrip_blocks=True,
     )
     environment.filters.update(figure=number, fixed=fixed, plural=plural)
-    return environment.get_template("report.html")
+    return environment.get_template(name)
 
 
 # ---- words and numbers ----------------------------------------------------------------------

@@ -24,7 +24,7 @@ from gridshell.arrays import Floats, Indices, Points
 
 _SAMPLES_PER_BAY = 6
 _INK, _QUIET = "#1c232d", "#5a6472"
-_LIGHT = {"ambient": 0.8, "diffuse": 0.35, "specular": 0.05, "roughness": 0.8, "fresnel": 0.05}
+LIGHT = {"ambient": 0.8, "diffuse": 0.35, "specular": 0.05, "roughness": 0.8, "fresnel": 0.05}
 _VIEW, _FIELD, _ASPECT = (0.62, -0.64, 0.46), np.pi / 4.0, 1.5
 """Towards the camera; plotly's own vertical field of view; the frame's width over its height."""
 
@@ -100,7 +100,7 @@ def shell_figure(structure: Structure, parts: Sequence[FlatPart]) -> Any:
     traces.append(_marks(structure, centre))
     points = np.concatenate([np.stack([t.x, t.y, t.z], axis=1) for t in traces]).astype(np.float64)
     points = points[np.isfinite(points[:, 0])]
-    traces += [_nodes(structure, centre), _axes(points)]
+    traces += [_nodes(structure, centre), axes_figure(points)]
     return go.Figure(traces, {"template": "none", "scene": {"camera": camera(points)}})
 
 
@@ -122,7 +122,7 @@ def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[A
         legendgroup=group,
         showlegend=True,
         color=css(FAMILY_COLOURS[family]),
-        lighting=_LIGHT,
+        lighting=LIGHT,
         hoverinfo="text",
         meta={"texts": [m.hover for m in meshes], "counts": [len(m.points) for m in meshes]},
     )
@@ -176,7 +176,7 @@ def _nodes(structure: Structure, centre: Floats) -> Any:
     )
 
 
-def _axes(points: Points) -> Any:
+def axes_figure(points: Points) -> Any:
     """The directions x, y and z in a lower corner around *points*, a round length long."""
     length = 10.0 ** np.floor(np.log10(np.ptp(points, axis=0).max() / 4.0))
     right, rear, _ = points.max(axis=0) - length

@@ -25,7 +25,9 @@ from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
 from fabrication.structures import Structure
 
-_PLACEHOLDER = "@whole@"
+PLACEHOLDER = "@whole@"
+"""Stands for the name of the whole until `sign`."""
+
 _SCHEMA = re.compile(rb"FILE_SCHEMA\(.*?\);", re.DOTALL)
 _PROCESSOR = re.compile(rb"'(Open CASCADE STEP processor[^']*)'")
 _OCCURRENCE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
@@ -65,19 +67,25 @@ def write_step(
     """
     quiet()
     path = Path(path)
-    nameless = cadquery.Assembly(whole.obj, whole.loc, _PLACEHOLDER, whole.color)
+    nameless = cadquery.Assembly(whole.obj, whole.loc, PLACEHOLDER, whole.color)
     nameless.children = whole.children
     if not exportAssembly(nameless, str(path), write_pcurves=False):
         raise OutputError("The STEP file cannot be written", where=str(path))
+    sign(path, whole.name, "Gridshell lamellas, bent and twisted into place", written)
+
+
+def sign(path: Path, name: str, description: str, written: datetime | None) -> None:
+    """Put our header and *name* into a file the kernel wrote; errors as `write_step`."""
     try:
-        path.write_bytes(_signed(path.read_bytes(), whole.name, path.name, written or _now()))
+        content = path.read_bytes()
+        path.write_bytes(_signed(content, name, path.name, description, written or _now()))
     except OSError as error:
         raise OutputError(
             "The STEP file cannot be written", where=str(path), value=error.strerror or ""
         ) from None
 
 
-def _signed(content: bytes, name: str, file: str, written: datetime) -> bytes:
+def _signed(content: bytes, name: str, file: str, description: str, written: datetime) -> bytes:
     """The kernel's file with our header, *name* as the product, occurrences numbered from 1.
 
     The kernel numbers occurrences on from the last file it wrote in the same process.
@@ -87,7 +95,7 @@ def _signed(content: bytes, name: str, file: str, written: datetime) -> bytes:
     header = [
         "ISO-10303-21;",
         "HEADER;",
-        "FILE_DESCRIPTION(('Gridshell lamellas, bent and twisted into place'),'2;1');",
+        f"FILE_DESCRIPTION(({step_string(description)}),'2;1');",
         f"FILE_NAME({step_string(file)},'{written:%Y-%m-%dT%H:%M:%S}',(''),(''),",
         f"  '{processor[1].decode() if processor else ''}','{_program()}','');",
         schema[0].decode() if schema else "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));",
@@ -100,7 +108,7 @@ def _signed(content: bytes, name: str, file: str, written: datetime) -> bytes:
         rest = re.sub(rb"\n *", b"", found[2])  # lines break by the number's length
         return b"%s'%d'%s" % (found[1], next(numbers), rest)
 
-    data = data.replace(f"'{_PLACEHOLDER}'".encode(), step_string(name).encode())
+    data = data.replace(f"'{PLACEHOLDER}'".encode(), step_string(name).encode())
     data = _OCCURRENCE.sub(renumbered, data)
     return "\n".join(header).encode() + data
 

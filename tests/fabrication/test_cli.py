@@ -386,7 +386,7 @@ def interrupted(command, write, tmp_path, monkeypatch):
     def stop(*args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fabrication.package.fit", stop)
+    monkeypatch.setattr("fabrication.lamella_route.fit", stop)
     path = write()
     return path, command("run", path, "--out", tmp_path / "out")
 
@@ -405,12 +405,12 @@ def test_an_interrupted_run_says_so(interrupted):
 
 TERMINATED = """
 import os, signal
-import fabrication.package as package
-fit = package.fit
+import fabrication.lamella_route as route
+fit = route.fit
 def stop(*args):
     os.kill(os.getpid(), signal.SIGTERM)
     return fit(*args)
-package.fit = stop
+route.fit = stop
 from fabrication.cli import main
 main()
 """

@@ -10,7 +10,7 @@ import gridshell as gs
 from fabrication import kernel_job as module
 from fabrication.cut import Edge, Slot
 from fabrication.errors import KernelError, OutputError, ProjectError, StockError
-from fabrication.kernel_job import kernel
+from fabrication.kernel_job import LamellaWork, kernel
 
 pytestmark = pytest.mark.xdist_group("kernel")
 
@@ -24,7 +24,7 @@ def here(monkeypatch, stand_in):
 def make(design, step, parts=None):
     with kernel() as cad:
         parts = design.parts if parts is None else parts
-        cad.order(design.structure, parts, name="shell", step=step)
+        cad.order(LamellaWork(design.structure, parts, "shell"), step)
         return cad.result()
 
 
@@ -104,7 +104,7 @@ def test_a_process_that_is_gone_before_its_order_is_told_with_its_last_words(
     program("echo gone >&2; exit 3")
     with kernel() as cad:
         cad._process.wait()
-        cad.order(pair.structure, pair.parts, name="shell", step=tmp_path / "x.step")
+        cad.order(LamellaWork(pair.structure, pair.parts, "shell"), tmp_path / "x.step")
         with pytest.raises(KernelError, match="exit code 3 gone"):
             cad.result()
 

@@ -7,7 +7,7 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication import package
+from fabrication import lamella_route, routes
 from fabrication.cut import area
 from fabrication.errors import KernelError, OutputError, StockError
 from gridshell.mesh import grid_quads
@@ -136,9 +136,9 @@ def test_the_report_counts_what_is_built(done):
 def test_a_good_project_has_no_findings_and_closes(done):
     _, report, _ = done
     assert report["findings"] == []
-    assert report["closure"]["max_mm"] < package.CLOSURE_LIMIT
-    assert report["closure"]["volume_ppm"] < package.VOLUME_LIMIT
-    assert report["fit"]["clash_mm3"]["max"] < package.CLASH_LIMIT
+    assert report["closure"]["max_mm"] < routes.CLOSURE_LIMIT
+    assert report["closure"]["volume_ppm"] < routes.VOLUME_LIMIT
+    assert report["fit"]["clash_mm3"]["max"] < lamella_route.CLASH_LIMIT
     assert report["fit"]["nodes"] == 9
 
 
@@ -245,7 +245,7 @@ def test_the_other_skin_is_built_of_the_other_half_of_the_net(tmp_path):
 def test_files_that_do_not_close_are_findings_of_severity_error():
     closed = {"worst": "A1 at N1", "max_mm": 0.06, "volume_ppm": 21.0}
     fit = fab.Fit(max_mm3=0.002, worst="N3", nodes=9)
-    found = package._loop_findings(closed, fit)
+    found = lamella_route.lamella_loop_findings(closed, fit)
     assert [(f.code, f.where, f.value, f.limit) for f in found] == [
         ("closure", "A1 at N1", 0.06, 0.05),
         ("volume", "all", 21.0, 20.0),

@@ -2,7 +2,7 @@ import pytest
 from pydantic import ValidationError
 
 import fabrication as fab
-from fabrication.sections import MeshSection, RemeshSource, SurfaceSource
+from fabrication.source_sections import MeshSection, SurfaceSource
 
 REST = {
     "name": "roof",
@@ -15,7 +15,6 @@ SURFACE = {
     "surface": {"kind": "hypar", "scale": 6000.0},
     "patch": {"layout": "asymptotic", "p": (-0.6, 0.6), "q": (-0.6, 0.6), "lamellas": (9, 9)},
 }
-IMPORTED = {"surface": {"file": "roof.step"}, "remesh": {"directions": "asymptotic"}}
 MESH = {"mesh": {"file": "roof.obj", "unit": "m", "lamellas_along": "edges"}}
 
 
@@ -23,14 +22,12 @@ def made(**changes):
     return fab.Project.model_validate({**REST, **SURFACE, **changes})
 
 
-@pytest.mark.parametrize(
-    ("given", "kind"), [(SURFACE, SurfaceSource), (MESH, MeshSection), (IMPORTED, RemeshSource)]
-)
+@pytest.mark.parametrize(("given", "kind"), [(SURFACE, SurfaceSource), (MESH, MeshSection)])
 def test_a_project_has_one_source(given, kind):
     assert isinstance(fab.Project.model_validate({**REST, **given}).source, kind)
 
 
-@pytest.mark.parametrize("given", [{}, {**SURFACE, **MESH}, {**IMPORTED, **MESH}])
+@pytest.mark.parametrize("given", [{}, {**SURFACE, **MESH}])
 def test_no_source_and_two_sources_are_refused(given):
     with pytest.raises(ValidationError, match=r"give either \[surface\] with \[patch\]"):
         fab.Project.model_validate({**REST, **given})

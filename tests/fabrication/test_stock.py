@@ -74,4 +74,4 @@ def test_margins_that_leave_nothing_of_a_sheet_are_refused():
 
 
 def test_materials_are_found_by_the_name_they_carry():
-    assert {m.name: m for m in (fab.S235, fab.STAINLESS, fab.BIRCH_PLY)} == MATERIALS
+    assert {m.name: m for m in (fab.S235, fab.STAINLESS, fab.BIRCH_PLY, fab.GLASS)} == MATERIALS

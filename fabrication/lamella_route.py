@@ -1,0 +1,185 @@
+"""Lamellas on an asymptotic net: strips, slots, and the files a shop cuts and bends them from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from math import radians
+from pathlib import Path
+
+import gridshell as gs
+from fabrication.checks import check
+from fabrication.errors import KernelError
+from fabrication.finding import Finding, Severity
+from fabrication.fitting import Fit, fit
+from fabrication.joints import SlotJoint
+from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
+from fabrication.nesting import NestedSheet, nest
+from fabrication.parts import FlatPart, flat_parts
+from fabrication.routes import (
+    CLOSURE_LIMIT,
+    VOLUME_LIMIT,
+    Clock,
+    Report,
+    Written,
+    loop_findings,
+)
+from fabrication.sections import ProfileSection, Project, SlotSection
+from fabrication.settings import profile_of, sheet_of
+from fabrication.structures import Structure, structure
+
+CLASH_LIMIT = 1e-3
+"""Largest volume two strips may share at a node, mm3."""
+
+
+@dataclass(frozen=True, eq=False)
+class LamellaRoute:
+    """The route of a project with ``[profile]`` and ``[joint]``."""
+
+    project: Project
+    profile: ProfileSection
+    joint: SlotSection
+
+    @property
+    def planarity(self) -> gs.Planarity:
+        """Vertex stars of D1 and D2."""
+        return gs.Planarity.DIAGONAL_STARS
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """One sheet at least."""
+        return ("sheets/sheet-01.dxf",)
+
+    def recipe(self) -> gs.NetRecipe:
+        """An A-net."""
+        net = self.project.net
+        angle = None if net.angle is None else radians(net.angle)
+        return gs.a_net(angle=angle, steps=net.steps, tolerance=net.tolerance)
+
+    def build(self, control: gs.ControlMesh, clock: Clock) -> LamellaSystem:
+        """Lamellas along one of the two diagonal meshes."""
+        with clock.stage("structure"):
+            skin = gs.diagonal_meshes(control)[0 if self.project.net.skin == "D1" else 1]
+            built = structure(skin, profile_of(self.profile), overhang=self.profile.overhang)
+        with clock.stage("parts"):
+            joint = SlotJoint(self.joint.clearance, self.joint.depth_clearance)
+            parts = flat_parts(built, joint)
+            sheets = nest(parts, sheet_of(self.project.sheet))
+            findings = (*joint.findings(built), *check(built, parts))
+        return LamellaSystem(self.project, joint, built, parts, sheets, findings)
+
+
+@dataclass(frozen=True, eq=False)
+class LamellaSystem:
+    """Lamellas, their flat parts, and the sheets these lie on."""
+
+    project: Project
+    joint: SlotJoint
+    structure: Structure
+    parts: tuple[FlatPart, ...]
+    sheets: tuple[NestedSheet, ...]
+    findings: Sequence[Finding]
+
+    def write(self, draft: Path, cad: Kernel, clock: Clock) -> Written:
+        """Sheets, cut list and STEP; the clash at the nodes is measured meanwhile."""
+        from fabrication.export.dxf import read_dxf, write_dxf
+        from fabrication.export.schedule import write_schedule
+        from fabrication.loop import compare
+
+        name, material = self.project.name, self.structure.profile.material
+        cad.order(LamellaWork(self.structure, self.parts, name), draft / "structure.step")
+        with clock.stage("fit"):
+            fitted = fit(self.structure, self.parts)
+        with clock.stage("sheets"):
+            files = write_dxf(self.sheets, draft / "sheets", name=name, material=material.name)
+            write_schedule(draft / "parts.csv", self.parts, self.sheets, material)
+            drawn = [part for path in files for part in read_dxf(path)]
+        with clock.stage("solids"):
+            solid = self._solids(cad)
+        with clock.stage("closure"):
+            skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
+            net = skins[0 if self.project.net.skin == "D1" else 1]
+            closed = asdict(compare(self.structure, self.parts, net, drawn, solid.parts))
+        return Written(
+            sections={
+                "structure": self._figures(fitted),
+                "closure": closed,
+                "fit": {
+                    "clash_mm3": {"max": fitted.max_mm3},
+                    "worst": fitted.worst,
+                    "nodes": fitted.nodes,
+                },
+            },
+            findings=lamella_loop_findings(closed, fitted),
+            kernel_seconds=solid.seconds,
+        )
+
+    def write_page(self, path: Path, report: Report, pictures: Sequence[Report]) -> None:
+        """The report on lamellas."""
+        from fabrication.export.report import write_report
+
+        write_report(
+            path,
+            name=self.project.name,
+            report=report,
+            structure=self.structure,
+            parts=self.parts,
+            sheets=self.sheets,
+            clearance=self.joint.clearance,
+            pictures=pictures,
+        )
+
+    def _figures(self, fitted: Fit) -> Report:
+        from fabrication.export.schedule import mass
+
+        material = self.structure.profile.material
+        return {
+            "lamellas": len(self.structure.lamellas),
+            "nodes": len(self.structure.nodes),
+            "joints": fitted.nodes,
+            "total_length_m": round(sum(p.length for p in self.parts) / 1000.0, 3),
+            "mass_kg": float(f"{sum(mass(p, material) for p in self.parts):.6g}"),
+            "max_edgewise_mm": max(p.development.edgewise for p in self.parts),
+            "max_edge_strain": max(p.development.edge_strain for p in self.parts),
+            "sheets": len(self.sheets),
+        }
+
+    def _solids(self, cad: Kernel) -> KernelResult:
+        try:
+            return cad.result()
+        except KernelError as error:
+            raise _with_findings(error, self.findings, self.parts) from None
+
+
+def lamella_loop_findings(closed: Report, fitted: Fit) -> list[Finding]:
+    """Errors where the files do not close back onto the design or the strips do not fit."""
+    return loop_findings(
+        (
+            ("closure", closed["worst"], closed["max_mm"], CLOSURE_LIMIT, "mm", "from the design"),
+            ("volume", "all", closed["volume_ppm"], VOLUME_LIMIT, "ppm", "between sheet and solid"),
+            ("clash", fitted.worst, fitted.max_mm3, CLASH_LIMIT, "mm3", "shared by two strips"),
+        )
+    )
+
+
+def _with_findings(
+    error: KernelError, findings: Sequence[Finding], parts: Sequence[FlatPart]
+) -> KernelError:
+    """*error* with what the checks found of its lamella, since no report comes, as advice."""
+    part = next((part for part in parts if part.mark == error.where), None)
+    if part is None:
+        return error
+    found = [f for f in findings if f.severity is Severity.ERROR and part.mark in f.where.split()]
+    if found:
+        told = " ".join(f.message for f in found[:3]).rstrip(".")
+        advice = f"to mend what the checks found there: {told}"
+    else:
+        gaps = (b.x - a.x - (a.width + b.width) / 2.0 for a, b in pairwise(part.slots))
+        advice = (
+            f"fewer lamellas or a thinner strip; its slots are {min(gaps, default=0.0):.2f} mm "
+        )
+        advice += "apart at the closest, and the checks found no error in it"
+    return KernelError(
+        error.what, where=error.where, value=error.value, limit=error.limit, advice=advice
+    )

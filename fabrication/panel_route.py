@@ -1,0 +1,230 @@
+"""Panels, support plates and connectors on a planar net, and the files they are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from math import degrees, radians
+from pathlib import Path
+
+import gridshell as gs
+from fabrication.bodies import Bodies, structure_bodies
+from fabrication.finding import Finding
+from fabrication.grouping import Group
+from fabrication.kernel_job import BodiesWork, Kernel
+from fabrication.nesting import NestedSheet, nest
+from fabrication.panel_sections import PanelsSection
+from fabrication.panel_settings import panel_system
+from fabrication.panel_structure import (
+    PanelStructure,
+    connector_mass,
+    panel_structure,
+)
+from fabrication.routes import (
+    CLOSURE_LIMIT,
+    VOLUME_LIMIT,
+    Clock,
+    Report,
+    Written,
+    loop_findings,
+)
+from fabrication.sections import Project
+from fabrication.settings import sheet_of
+from fabrication.sheet_parts import panel_piece, plate_piece
+from fabrication.support import SupportPlate
+
+_SKINS = {"D1": gs.Skin.D1, "D2": gs.Skin.D2, "P": gs.Skin.PATTERN}
+
+
+@dataclass(frozen=True, eq=False)
+class PanelRoute:
+    """The route of a project with ``[panels]``."""
+
+    project: Project
+    panels: PanelsSection
+
+    @property
+    def planarity(self) -> gs.Planarity:
+        """The white quads of the checkerboard pattern: faces of D1 and of D2."""
+        return gs.Planarity.WHITE_FACES
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """One sheet of panels at least."""
+        plates = () if self.project.supports is None else ("sheets/plates-01.dxf",)
+        return ("sheets/panels-01.dxf", *plates)
+
+    def recipe(self) -> gs.NetRecipe:
+        """A net of planar quads."""
+        net = self.project.net
+        return gs.pq_net(
+            angle=None if net.angle is None else radians(net.angle),
+            rhombus=net.rhombus,
+            square=net.square,
+            conditions=(gs.FlatRim(),),
+            steps=net.steps,
+            tolerance=net.tolerance,
+        )
+
+    def build(self, control: gs.ControlMesh, clock: Clock) -> PanelNetSystem:
+        """Panels on one of the three skins."""
+        project = self.project
+        with clock.stage("structure"):
+            mesh = gs.skin(control, _SKINS[project.net.skin])
+            built = panel_structure(mesh, panel_system(project, self.panels))
+            findings = built.findings()
+        with clock.stage("parts"):
+            stock = sheet_of(project.panel_sheet or project.sheet)
+            panels = nest([panel_piece(p) for p in built.panels], stock)
+            plates = nest([plate_piece(p) for p in built.plates], sheet_of(project.sheet))
+            bodies = structure_bodies(built)
+        return PanelNetSystem(project, built, panels, plates, bodies, findings)
+
+
+@dataclass(frozen=True, eq=False)
+class PanelNetSystem:
+    """Panels, plates and connectors, the sheets the flat ones lie on, and their solids."""
+
+    project: Project
+    built: PanelStructure
+    panel_sheets: tuple[NestedSheet, ...]
+    plate_sheets: tuple[NestedSheet, ...]
+    bodies: Bodies
+    findings: Sequence[Finding]
+
+    def write(self, draft: Path, cad: Kernel, clock: Clock) -> Written:
+        """Sheets, cut list and STEP, read back and laid over the net of ``net.json``."""
+        from fabrication.export.dxf import read_dxf
+        from fabrication.export.panel_schedule import write_panel_schedule
+        from fabrication.panel_loop import panel_closure
+
+        cad.order(BodiesWork(self.bodies, self.project.name), draft / "structure.step")
+        with clock.stage("sheets"):
+            files = self._write_sheets(draft / "sheets")
+            write_panel_schedule(
+                draft / "parts.csv", self.built, self.panel_sheets, self.plate_sheets
+            )
+            drawn = [part for path in files for part in read_dxf(path)]
+        with clock.stage("solids"):
+            solid = cad.result()
+        with clock.stage("closure"):
+            control = gs.read_net(draft / "net.json")
+            mesh = gs.skin(control, _SKINS[self.project.net.skin])
+            closed = asdict(panel_closure(mesh, self.built.system, drawn, solid.parts))
+            supports = self._supports()
+        return Written(
+            sections={
+                "structure": self._figures(),
+                "closure": closed,
+                **({} if supports is None else {"supports": supports}),
+            },
+            findings=loop_findings(
+                (
+                    (
+                        *("closure", closed["worst"], closed["max_mm"], CLOSURE_LIMIT),
+                        *("mm", "from the design"),
+                    ),
+                    (
+                        *("volume", "all", closed["volume_ppm"], VOLUME_LIMIT),
+                        *("ppm", "between sheet and solid"),
+                    ),
+                )
+            ),
+            kernel_seconds=solid.seconds,
+        )
+
+    def write_page(self, path: Path, report: Report, pictures: Sequence[Report]) -> None:
+        """The report on panels."""
+        from fabrication.export.panel_report import write_panel_report
+
+        write_panel_report(
+            path,
+            name=self.project.name,
+            report=report,
+            built=self.built,
+            panel_sheets=self.panel_sheets,
+            plate_sheets=self.plate_sheets,
+            pictures=pictures,
+        )
+
+    def _write_sheets(self, folder: Path) -> list[Path]:
+        from fabrication.export.dxf import write_dxf
+
+        system, name = self.built.system, self.project.name
+        panels = group_names([p.mark for p in self.built.panels], self.built.panel_groups)
+        files = write_dxf(
+            self.panel_sheets,
+            folder,
+            name=name,
+            material=system.panels.material.name,
+            prefix="panels",
+            alike=panels,
+        )
+        if system.plates is not None:
+            plates = group_names([p.mark for p in self.built.plates], self.built.plate_groups)
+            files += write_dxf(
+                self.plate_sheets,
+                folder,
+                name=name,
+                material=system.plates.material.name,
+                prefix="plates",
+                alike=plates,
+            )
+        return files
+
+    def _figures(self) -> Report:
+        built = self.built
+        material = built.system.connector_material
+        mass = sum(p.mass for p in built.panels) + sum(p.mass for p in built.plates)
+        if material is not None:
+            mass += sum(connector_mass(c, material) for c in built.connectors)
+        return {
+            "panels": len(built.panels),
+            "plates": len(built.plates),
+            "connectors": len(built.connectors),
+            "nodes": len(built.mesh.vertices),
+            "panel_groups": len(built.panel_groups),
+            "plate_groups": len(built.plate_groups),
+            "connector_groups": len(built.connector_groups),
+            "distinct_solids": len(self.bodies.shapes),
+            "panel_area_m2": round(sum(p.area for p in built.panels) / 1e6, 4),
+            "panel_planarity_mm": {"max": max(p.planarity for p in built.panels)},
+            "corner_angle_deg": {
+                "min": degrees(min(float(p.corner_angles.min()) for p in built.panels)),
+                "max": degrees(max(float(p.corner_angles.max()) for p in built.panels)),
+            },
+            "mass_kg": float(f"{mass:.6g}"),
+            "sheets": len(self.panel_sheets) + len(self.plate_sheets),
+            "panel_sheets": len(self.panel_sheets),
+            "plate_sheets": len(self.plate_sheets),
+        }
+
+    def _supports(self) -> Report | None:
+        plates, classical = self.built.plates, self.built.classical_plates
+        if not plates:
+            return None
+        return {
+            "out_of_plane_mm": {"max": max(p.out_of_plane for p in plates)},
+            "out_of_plane_mm_per_m": {"max": max(_per_metre(p) for p in plates)},
+            "twist_deg": {"max": max(degrees(abs(p.twist)) for p in plates)},
+            "classical_out_of_plane_mm": {"max": max(p.out_of_plane for p in classical)},
+            "classical_twist_deg": {"max": max(degrees(abs(p.twist)) for p in classical)},
+            "flat": sum(p.flat for p in plates),
+            "plates": len(plates),
+            "height_mm": self._height,
+        }
+
+    @cached_property
+    def _height(self) -> float:
+        section = self.built.system.plates
+        return 0.0 if section is None else section.height
+
+
+def group_names(marks: Sequence[str], groups: Sequence[Group]) -> Mapping[str, str]:
+    """The group of every mark."""
+    return {marks[member.index]: group.name for group in groups for member in group.members}
+
+
+def _per_metre(plate: SupportPlate) -> float:
+    return plate.out_of_plane / plate.length * 1000.0

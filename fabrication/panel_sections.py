@@ -1,0 +1,55 @@
+"""The sections of a project that say how panels, support plates and connectors are made: mm."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from fabrication.section_types import Distance, Place, Section, Sheeting, SheetMetal, Size
+
+
+class PanelsSection(Section):
+    """Flat panels: one per face of the net, its lower side on the net."""
+
+    thickness: Size
+    gap: Annotated[Distance, Field(description="between neighbours")] = 10.0
+    clearance: Distance = 0.0
+    material: Sheeting = "glass"
+    tolerance: Size = 0.5
+    turn_over: bool = False
+
+
+class SupportsSection(Section):
+    """Plates between neighbouring nodes; *below* and *above* are places along the node axes."""
+
+    below: Place
+    above: Place = 0.0
+    thickness: Size
+    material: SheetMetal = "S235"
+    setback: Annotated[
+        Distance | None,
+        Field(description="the slot's floor of the connector; without connectors the thickness"),
+    ] = None
+
+
+class ConnectorSection(Section):
+    """Cylinders with one slot per plate."""
+
+    kind: Literal["cylinder"] = "cylinder"
+    radius: Size
+    height: Annotated[Size | None, Field(description="that of the plates")] = None
+    depth: Annotated[Size | None, Field(description="half the radius")] = None
+    clearance: Distance = 0.3
+    web: Annotated[Size | None, Field(description="the plates' thickness")] = None
+    material: SheetMetal = "S235"
+
+
+class FacadeSection(Section):
+    """Flat triangles, two per bay of an asymptotic net, and profiles along its diagonals."""
+
+    thickness: Size
+    gap: Distance = 10.0
+    clearance: Distance = 0.0
+    material: Sheeting = "glass"
+    rule: Literal["shorter", "flatter"] = "shorter"

@@ -1,0 +1,26 @@
+"""Where a setting stands in a project file, for errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import gridshell as gs
+from fabrication.errors import ProjectError
+
+
+@contextmanager
+def placed(path: Path, section: str) -> Iterator[None]:
+    """Add the file and the section to the place an error names."""
+    try:
+        yield
+    except gs.InputError as error:
+        at = error.where or ""
+        raise ProjectError(
+            error.what,
+            where=f"{path}, {section}.{at}" if at.isidentifier() else f"{path}, {section}: {at}",
+            value=error.value,
+            limit=error.limit,
+            advice=error.advice,
+        ) from None

@@ -1,0 +1,111 @@
+"""Panels and plates as they lie on a sheet: turned into their smallest box, with their marks.
+
+A panel's outline lies around its middle; on a sheet it lies in (0, 0) .. (length, width). Along
+every side of a panel stands the mark of the neighbour, near every end of a plate that of its node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fabrication.connector import connector_mark
+from fabrication.outlines import polygon_area
+from fabrication.panel import Panel
+from fabrication.parts import Label
+from fabrication.support import SupportPlate
+from gridshell.arrays import Floats, frozen
+
+_LARGEST, _OWN, _ASIDE = 25.0, 0.14, 0.6
+"""Height of marks: at most, mm; over the part's width; of a neighbour's mark over the own one."""
+
+_LETTER = 0.9
+"""Width of a letter over its height."""
+
+
+@dataclass(frozen=True, eq=False)
+class SheetPiece:
+    """A flat part turned for its sheet; the first corner stays the first.
+
+    Parameters
+    ----------
+    mark : the part's.
+    outline : (k, 2) closed, counter-clockwise, within (0, 0) .. (length, width), mm.
+    labels : own mark and neighbours'.
+    length, width, thickness : mm.
+    """
+
+    mark: str
+    outline: Floats
+    labels: tuple[Label, ...]
+    length: float
+    width: float
+    thickness: float
+
+    @property
+    def area(self) -> float:
+        """Mm2."""
+        return polygon_area(self.outline)
+
+
+def panel_piece(panel: Panel) -> SheetPiece:
+    """The panel with its mark, and along every side the mark of the panel across."""
+    return _piece(panel.mark, panel.outline, panel.neighbours, panel.thickness)
+
+
+def plate_piece(plate: SupportPlate) -> SheetPiece:
+    """The plate with its mark, and at either end the mark of the node; its upper edge is up."""
+    first, second = (connector_mark(node) for node in plate.nodes)
+    return _piece(plate.mark, plate.outline, (None, second, None, first), plate.thickness)
+
+
+def _piece(
+    mark: str, outline: Floats, beside: Sequence[str | None], thickness: float
+) -> SheetPiece:
+    turned = _turned(outline)
+    length, width = turned.max(axis=0).tolist()
+    return SheetPiece(mark, frozen(turned), _labels(mark, turned, beside), length, width, thickness)
+
+
+def _turned(outline: Floats) -> Floats:
+    """(k, 2) along the side whose box is the smallest, the box's longer side along x."""
+    run = np.roll(outline, -1, axis=0) - outline
+    angle = np.arctan2(run[:, 1], run[:, 0])
+    angle = np.concatenate([angle, angle - np.pi / 2.0])
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    x, y = outline.T
+    all_x, all_y = c * x + s * y, c * y - s * x
+    wide, high = np.ptp(all_x, axis=1), np.ptp(all_y, axis=1)
+    # among equal boxes the first, so that like parts lie alike
+    cost = np.where(wide >= high * (1.0 - 1e-9), wide * high, np.inf)
+    best = int(np.argmin(np.round(cost / cost.min(), 9)))
+    points = np.stack([all_x[best], all_y[best]], axis=1)
+    return np.asarray(points - points.min(axis=0))
+
+
+def _labels(mark: str, outline: Floats, beside: Sequence[str | None]) -> tuple[Label, ...]:
+    room = float(np.ptp(outline, axis=0).min())
+    following = np.roll(outline, -1, axis=0)
+    run = following - outline
+    side = np.linalg.norm(run, axis=1)
+    height = min(_LARGEST, _OWN * room, float(side.max()) / (_LETTER * (len(mark) + 2)))
+    middle = outline.mean(axis=0)
+    labels = [Label(mark, float(middle[0]), float(middle[1]), height)]
+    for c, text in enumerate(beside):
+        if text is None:
+            continue
+        small = min(_ASIDE * height, float(side[c]) / (_LETTER * (len(text) + 2)))
+        inward = np.array([-run[c, 1], run[c, 0]]) / side[c]
+        place = (outline[c] + following[c]) / 2.0 + 1.2 * small * inward
+        labels.append(Label(text, float(place[0]), float(place[1]), small, _upright(run[c])))
+    return tuple(labels)
+
+
+def _upright(run: Floats) -> float:
+    """Angle of a text along *run* that is not upside down, in (-90, 90] degrees, radians."""
+    angle = float(np.arctan2(run[1], run[0]))
+    if angle > np.pi / 2.0 + 1e-9:
+        return angle - np.pi
+    return angle + np.pi if angle <= -np.pi / 2.0 + 1e-9 else angle

@@ -1,0 +1,64 @@
+"""What the command line says of a run: a few lines from its report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from fabrication.export.words import number, plural
+
+Report = dict[str, Any]
+
+
+def summary_lines(report: Report) -> list[str]:
+    """What was built and how well, by the kind of net."""
+    lines: Callable[[Report], list[str]] = _planar if "panels" in report["structure"] else _strips
+    return lines(report)
+
+
+def _strips(report: Report) -> list[str]:
+    built, closed, angle = report["structure"], report["closure"], report["net"]["node_angle_deg"]
+    clash = report["fit"]["clash_mm3"]["max"]
+    return [
+        f"{plural(built['lamellas'], 'lamella')}, {plural(built['joints'], 'joint')}, "
+        f"{length(built['total_length_m'])}, {mass(built['mass_kg'])} on "
+        f"{plural(built['sheets'], 'sheet')}; "
+        f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",
+        f"files close onto the design within {closed['max_mm']:.3f} mm, volumes within "
+        f"{closed['volume_ppm']:.1f} ppm; largest clash {clash:.1g} mm3",
+    ]
+
+
+def _planar(report: Report) -> list[str]:
+    built, closed, angle = report["structure"], report["closure"], report["net"]["node_angle_deg"]
+    parts = [f"{plural(built['panels'], 'panel')} in {plural(built['panel_groups'], 'group')}"]
+    if built["plates"]:
+        parts.append(plural(built["plates"], "support plate"))
+    if built["connectors"]:
+        parts.append(plural(built["connectors"], "connector"))
+    lines = [
+        f"{', '.join(parts)}, {mass(built['mass_kg'])} on {plural(built['sheets'], 'sheet')}; "
+        f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",
+    ]
+    held = report.get("supports")
+    if held is not None:
+        lines.append(
+            f"plates within {number(held['out_of_plane_mm']['max'], 2)} mm of their planes "
+            f"({number(held['classical_out_of_plane_mm']['max'], 2)} mm with averaged normals), "
+            f"twisted by {number(held['twist_deg']['max'], 2)} degrees at most"
+        )
+    lines.append(
+        f"files close onto the design within {closed['max_mm']:.3f} mm, volumes within "
+        f"{closed['volume_ppm']:.1f} ppm"
+    )
+    return lines
+
+
+def length(metres: float) -> str:
+    """Metres, or millimetres where it is less than one."""
+    return f"{metres:.1f} m" if metres >= 1.0 else f"{metres * 1e3:.0f} mm"
+
+
+def mass(kilograms: float) -> str:
+    """Kilograms, or grams where it is less than one."""
+    return f"{kilograms:.1f} kg" if kilograms >= 1.0 else f"{kilograms * 1e3:.3g} g"
