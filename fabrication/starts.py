@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gridshell as gs
-from fabrication.remesh_checks import UNSOUND
+from fabrication.remesh_checks import CONCAVE
 from fabrication.remesh_job import Remeshed, Wish, lay, read_wished
 from fabrication.sections import USUAL_QUADS, MeshSection, Project, RemeshSection, RemeshSource
 from fabrication.settings import patch_of, surface_of
@@ -76,7 +76,7 @@ def _remeshed(source: RemeshSource, folder: Path, stage: Stage) -> Start:
         raise _at("surface.unit", error) from None
     except gs.SettingError as error:
         raise _at(f"remesh.{error.where}", error) from None
-    about = tuple(f for f in found.findings if f.code != UNSOUND)  # C is judged when optimised
+    about = tuple(f for f in found.findings if f.code != CONCAVE)  # C is judged when optimised
     return Start(control, found.made.reference, replace(found, findings=about))
 
 

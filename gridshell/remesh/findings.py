@@ -59,13 +59,24 @@ def findings(
                 place(chart.mesh.vertices[lost[0]]),
             )
         )
+    narrow = np.flatnonzero(about.valences == 2)
+    if len(narrow):
+        found.append(
+            Remark(
+                "umbilic-hole",
+                f"{len(narrow)} singular points are of valence 2: the control mesh has holes "
+                "there, as planar quads cannot go around them",
+                float(len(narrow)),
+                place(about.positions[narrow[0]]),
+            )
+        )
     bad = np.flatnonzero(collapsed(mesh.vertices, mesh.quads, mesh.mean_edge))
     if len(bad):
         found.append(
             Remark(
                 "concave-quads",
                 f"{len(bad)} quads are concave or slivers, as beside a vertex where two edges "
-                "meet; a hole at the singular point, or another angle, avoids them",
+                "meet; the control mesh may be sound all the same",
                 float(len(bad)),
                 place(mesh.vertices[mesh.quads[bad[0]]].mean(axis=0)),
             )

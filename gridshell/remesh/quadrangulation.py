@@ -18,7 +18,7 @@ from gridshell.field import (
     require_curvature,
     singularities,
 )
-from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, two_colouring
+from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, main_piece, two_colouring
 from gridshell.remesh.directions import Conjugate, Directions
 from gridshell.remesh.extent import Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
@@ -59,7 +59,9 @@ class Quadrangulation:
     def control(self) -> ControlMesh:
         """The control mesh C: one colour of M's vertices, that of the singular ones (Fig. 6 d).
 
-        Its diagonals of family 1 follow the field's first direction.
+        Its diagonals of family 1 follow the field's first direction. Around a singular point of
+        valence 2 (an umbilic of index +1/2) two quads share two edges: one of them has a corner of
+        180 degrees or more and no planar net has it, so both are left out and a hole stays.
 
         Raises
         ------
@@ -67,7 +69,9 @@ class Quadrangulation:
             When M is too small or too narrow to hold one.
         """
         control = control_mesh(self.mesh)
-        return control if _begins_with(self.mesh, control) else control.families_exchanged()
+        if not _begins_with(self.mesh, control):
+            control = control.families_exchanged()
+        return _opened(control)
 
 
 def quadrangulate(
@@ -142,6 +146,18 @@ def quadrangulate(
     return Quadrangulation(
         mesh, ready.reference, refined.curved, refined.field, chart, points, errors, report
     )
+
+
+def _opened(control: ControlMesh) -> ControlMesh:
+    """Without the quads around interior vertices of valence 2."""
+    mesh = control.mesh
+    narrow = (mesh.valence == 2) & ~mesh.on_boundary
+    kept = np.flatnonzero(~narrow[mesh.quads].any(axis=1))
+    if len(kept) == len(mesh.quads):
+        return control
+    kept = kept[main_piece(mesh.quads[kept])]
+    used, quads = np.unique(mesh.quads[kept], return_inverse=True)
+    return ControlMesh(QuadMesh(mesh.vertices[used], quads.reshape(-1, 4)), control.colour[used])
 
 
 def _begins_with(mesh: QuadMesh, control: ControlMesh) -> bool:

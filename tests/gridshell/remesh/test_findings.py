@@ -13,7 +13,17 @@ from gridshell.surface import TriangleMesh
 GOOD = Spread(0.1, 0.3, 2.0)
 
 
-def said(*, stray=GOOD, lam=100.0, infeasible=0.0, control=10, cones=(), folded=(), dent=0.0):
+def said(
+    *,
+    stray=GOOD,
+    lam=100.0,
+    infeasible=0.0,
+    control=10,
+    cones=(),
+    folded=(),
+    dent=0.0,
+    valences=(),
+):
     points = np.stack([*np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0, 2.0], indexing="ij")], axis=-1)
     points = np.concatenate([points.reshape(-1, 2), np.zeros((9, 1))], axis=1)
     points[8, :2] -= dent
@@ -25,7 +35,12 @@ def said(*, stray=GOOD, lam=100.0, infeasible=0.0, control=10, cones=(), folded=
         cones=np.array(cones, dtype=np.int64),
         folded=np.array(folded, dtype=np.int64),
     )
-    about = SimpleNamespace(infeasible_area=infeasible, angles=np.radians([40, 50, 60, 70, 80.0]))
+    about = SimpleNamespace(
+        infeasible_area=infeasible,
+        angles=np.radians([40, 50, 60, 70, 80.0]),
+        valences=np.array(valences, dtype=np.int64),
+        positions=points[: len(valences)],
+    )
     found = findings(mesh, chart, about, stray, control, np.array([1], dtype=np.int64))
     return {remark.code: remark for remark in found}
 
@@ -48,6 +63,13 @@ def test_an_angle_the_surface_does_not_have(share, effect):
     assert "40.0 to 80.0 degrees" in found.message
     assert ("no effect" in found.message) == effect
     assert found.value == share
+
+
+def test_holes_of_the_control_mesh():
+    assert said(valences=(6, 8)) == {}
+    found = said(valences=(6, 2))["umbilic-hole"]
+    assert found.value == 1.0
+    assert found.where == "(0, 1, 0) mm"
 
 
 def test_a_mesh_too_coarse_for_a_control_mesh():

@@ -126,6 +126,10 @@ def test_conjugate_nets_have_planar_quads_and_their_angle(name, made):
 def test_principal_nets_of_domes_and_closed_surfaces(made):
     dome = made("dome", Principal(), 500)
     assert [s.valence for s in dome.report.singularities] == [2, 2]
+    control = dome.control()
+    assert "umbilic-hole" in [r.code for r in dome.report.remarks]
+    assert len(control.mesh.boundary_loops) == 3  # the rim, and a hole at either umbilic
+    assert set(control.mesh.valence[~control.mesh.on_boundary]) == {4}
     off = inner_strays(dome.mesh, CASES["dome"].shapes_at, principal_lines)
     assert off.mean() <= 0.7
     assert np.percentile(off, 95) <= 2.0
