@@ -164,9 +164,10 @@ class _Work:
         near = ring(mesh, self.turns.vertices, 2)
         lams[near] = np.minimum(lam, SOFT)
         weight = np.ones(len(mesh.triangles))
+        rises = self._rises(by_factor)
         best: Seamless | None = None
         for _ in range(_STIFFENINGS + 1):
-            found = self._solve(lams, weight, lam, by_factor)
+            found = self._solve(lams, weight, lam, rises)
             if best is None or self.spoilt(found) < self.spoilt(best):
                 best = found
             if self.spoilt(found) == 0.0:
@@ -178,14 +179,10 @@ class _Work:
         assert best is not None
         return best
 
-    def _solve(self, lams: Floats, weight: Floats, lam: float, by_factor: bool) -> Seamless:
-        mesh, field = self.field.mesh, self.field
-        signs = self.cut.signs
-        d1, d2 = (_flat(angle) * signs[:, None] for angle in (field.first, field.second))
+    def _solve(self, lams: Floats, weight: Floats, lam: float, rises: list[Floats]) -> Seamless:
+        mesh = self.field.mesh
         found: list[Coordinate] = []
-        pairs = ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0)))
-        rises = self._rises([across for _, across in pairs], by_factor)
-        for (lines, across), rise in zip(pairs, rises, strict=True):
+        for (lines, across), rise in zip(self._families(), rises, strict=True):
             target = Target(lines, across, rise, weight, lams)
             unknowns = self.unknowns[len(found)]
             found.append(coordinate(mesh, unknowns, target, self.engine))
@@ -196,20 +193,31 @@ class _Work:
             mesh,
             corners,
             self.cut.flips,
-            signs,
+            self.cut.signs,
             lam,
             np.flatnonzero(area <= 0.0),
             cones,
             (found[0], found[1]),
         )
 
-    def _rises(self, across: list[Floats], by_factor: bool) -> list[Floats]:
+    def _families(self) -> list[tuple[Floats, Floats]]:
+        """Lines and what is across them, (f, 2) each: of u, constant along family 2, then of v."""
+        first, second = (
+            _flat(angle) * self.cut.signs[:, None]
+            for angle in (self.field.first, self.field.second)
+        )
+        return [(second, _turned(second, -1.0)), (first, _turned(first, 1.0))]
+
+    def _rises(self, by_factor: bool) -> list[Floats]:
         """Derivatives wanted across both families, (f,) each, 1/mm; they make as many cells."""
         mesh, sine = self.field.mesh, np.sin(self.field.angle)
         rise = 1.0 / (self.spacing * sine)
         if not by_factor:
             return [rise, rise]
-        u, v = (integrating_factor(mesh, x * rise[:, None], self.engine) for x in across)
+        u, v = (
+            integrating_factor(mesh, across * rise[:, None], self.engine)
+            for _, across in self._families()
+        )
         more = float(np.average(u * v, weights=mesh.areas / sine))
         return [rise * factor / np.sqrt(more) for factor in (u, v)]
 
