@@ -11,7 +11,7 @@ from pathlib import Path
 import gridshell as gs
 from fabrication.checks import check
 from fabrication.errors import KernelError
-from fabrication.finding import Finding, Severity
+from fabrication.finding import Finding
 from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
@@ -23,6 +23,7 @@ from fabrication.routes import (
     Clock,
     Report,
     Written,
+    errors_at,
     loop_findings,
 )
 from fabrication.sections import ProfileSection, Project, SlotSection
@@ -170,9 +171,8 @@ def _with_findings(
     part = next((part for part in parts if part.mark == error.where), None)
     if part is None:
         return error
-    found = [f for f in findings if f.severity is Severity.ERROR and part.mark in f.where.split()]
-    if found:
-        told = " ".join(f.message for f in found[:3]).rstrip(".")
+    told = errors_at(part.mark, findings)
+    if told:
         advice = f"to mend what the checks found there: {told}"
     else:
         gaps = (b.x - a.x - (a.width + b.width) / 2.0 for a, b in pairwise(part.slots))

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import gridshell as gs
 from fabrication.bodies import Bodies, structure_bodies
+from fabrication.errors import KernelError
 from fabrication.finding import Finding
 from fabrication.grouping import Group
-from fabrication.kernel_job import BodiesWork, Kernel
+from fabrication.kernel_job import BodiesWork, Kernel, KernelResult
 from fabrication.nesting import NestedSheet, nest
 from fabrication.panel_sections import PanelsSection
 from fabrication.panel_settings import panel_system
@@ -27,6 +28,7 @@ from fabrication.routes import (
     Clock,
     Report,
     Written,
+    errors_at,
     loop_findings,
 )
 from fabrication.sections import Project
@@ -107,7 +109,7 @@ class PanelNetSystem:
             )
             drawn = [part for path in files for part in read_dxf(path)]
         with clock.stage("solids"):
-            solid = cad.result()
+            solid = self._solids(cad)
         with clock.stage("closure"):
             control = gs.read_net(draft / "net.json")
             mesh = gs.skin(control, _SKINS[self.project.net.skin])
@@ -147,6 +149,16 @@ class PanelNetSystem:
             plate_sheets=self.plate_sheets,
             pictures=pictures,
         )
+
+    def _solids(self, cad: Kernel) -> KernelResult:
+        try:
+            return cad.result()
+        except KernelError as error:
+            told = errors_at(error.where or "", self.findings)
+            advice = f"to mend what the checks found there: {told}" if told else error.advice
+            raise KernelError(
+                error.what, where=error.where, value=error.value, limit=error.limit, advice=advice
+            ) from None
 
     def _write_sheets(self, folder: Path) -> list[Path]:
         from fabrication.export.dxf import write_dxf

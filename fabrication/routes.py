@@ -94,6 +94,12 @@ class Route(Protocol):
         """The system on *control*, optimised."""
 
 
+def errors_at(mark: str, findings: Sequence[Finding]) -> str:
+    """What the first findings of severity error say of the part *mark*, as one line."""
+    found = [f for f in findings if f.severity is Severity.ERROR and mark in f.where.split()]
+    return " ".join(f.message for f in found[:3]).rstrip(".")
+
+
 Measure = tuple[str, str, float, float, str, str]
 """Code, where, value, limit, unit, and what the value is."""
 

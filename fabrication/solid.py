@@ -25,7 +25,7 @@ from gridshell.arrays import Floats, unit
 
 try:
     import build123d
-    from OCP import Standard
+    from OCP import Standard, StdFail
     from OCP.BRep import BRep_Builder
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepGProp import BRepGProp
@@ -55,7 +55,8 @@ except ImportError as error:  # pragma: no cover - depends on the machine
 
 KERNEL_ERRORS = tuple(
     kind
-    for kind in vars(Standard).values()
+    for module in (Standard, StdFail)
+    for kind in vars(module).values()
     if isinstance(kind, type) and issubclass(kind, Exception)
 )
 """The kernel's own exceptions have no common base in Python."""

@@ -16,6 +16,8 @@ import gridshell as gs
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PROJECTS = sorted(EXAMPLES.glob("*.toml"))
+PANELS = [path for path in PROJECTS if 'kind = "planar"' in path.read_text()]
+LAMELLAS = [path for path in PROJECTS if path not in PANELS]
 SCRIPTS = sorted(EXAMPLES.glob("*.py"))
 
 
@@ -33,7 +35,7 @@ def packages(tmp_path_factory):
     return package
 
 
-@pytest.mark.parametrize("path", PROJECTS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", LAMELLAS, ids=lambda p: p.stem)
 @pytest.mark.xdist_group("examples")
 def test_project_gives_a_package_that_closes(path, packages):
     report, out = packages(path.stem)
@@ -46,6 +48,54 @@ def test_project_gives_a_package_that_closes(path, packages):
     assert report["net"]["edge_ratio"]["max"] < 2.0
     written = json.loads((out / "report.json").read_text())
     assert written == json.loads(json.dumps(report))
+
+
+@pytest.mark.parametrize("path", PANELS, ids=lambda p: p.stem)
+@pytest.mark.xdist_group("examples")
+def test_project_of_panels_gives_a_package_that_closes(path, packages):
+    report, out = packages(path.stem)
+    assert report["closure"]["max_mm"] < 0.05
+    assert report["closure"]["volume_ppm"] < 20.0
+    assert report["net"]["face_planarity"]["max"] < 1e-6
+    assert report["net"]["angle_error_deg"]["max"] < 1e-3
+    assert not [f for f in report["findings"] if f["severity"] == "error"]
+    for kind in ("panels", "plates"):
+        parts = [p for file in (out / "sheets").glob(f"{kind}-*") for p in fab.read_dxf(file)]
+        assert len(parts) == report["structure"][kind]
+    written = json.loads((out / "report.json").read_text())
+    assert written == json.loads(json.dumps(report))
+
+
+@pytest.mark.parametrize("name", ["09_tower_panels", "11_roof_panels"])
+@pytest.mark.xdist_group("examples")
+def test_support_plates_at_90_degrees_are_flat(name, packages):
+    report, _ = packages(name)
+    assert report["findings"] == []
+    assert report["supports"]["out_of_plane_mm"]["max"] < 1e-4
+    assert report["supports"]["flat"] == report["structure"]["plates"]
+
+
+@pytest.mark.xdist_group("examples")
+def test_panels_of_a_storey_are_equal_and_share_a_solid(packages):
+    report, out = packages("09_tower_panels")
+    assert report["structure"]["panels"] == 140
+    assert report["structure"]["panel_groups"] == 7
+    shapes = (out / "structure.step").read_text().count("MANIFOLD_SOLID_BREP(")
+    assert shapes == report["structure"]["distinct_solids"] <= 30
+
+
+@pytest.mark.xdist_group("examples")
+def test_principal_plates_of_a_free_roof_beat_averaged_normals(packages):
+    report, _ = packages("11_roof_panels")
+    assert report["supports"]["classical_out_of_plane_mm"]["max"] > 0.5
+
+
+@pytest.mark.xdist_group("examples")
+def test_rhombi_at_70_degrees_cost_a_twist_that_is_told(packages):
+    report, _ = packages("10_rhombus_panels_70")
+    assert report["net"]["rhombus_error"]["max"] < 1e-6
+    assert {f["code"] for f in report["findings"]} == {"support-twist"}
+    assert 1.0 < report["supports"]["out_of_plane_mm"]["max"] < 4.0
 
 
 @pytest.mark.parametrize(

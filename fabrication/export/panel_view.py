@@ -61,7 +61,7 @@ def _panels(built: PanelStructure, centre: Floats) -> list[Any]:
             f"{number(panel.mass)} kg<br>corners {angles}°"
         )
     mesh = _fans(polygons, texts, centre, name="Panels", colours=shades)
-    mesh.update(opacity=0.94, legendgroup="panels")
+    mesh.update(legendgroup="panels")
     return [mesh, _rims(polygons, centre)]
 
 
@@ -148,7 +148,7 @@ def _rims(polygons: Sequence[Points], centre: Floats) -> Any:
 def _marks(built: PanelStructure, centre: Floats) -> Any:
     places = np.array([p.in_space().mean(axis=0) for p in built.panels])
     lift = np.array([p.frame.normal for p in built.panels])
-    raised = places + 2.5 * built.system.panels.thickness * lift
+    raised = places + 0.05 * built.mesh.edge_lengths.mean() * lift
     return go.Scatter3d(
         **xyz(on_screen(raised, centre)),
         mode="text",

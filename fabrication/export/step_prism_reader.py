@@ -87,7 +87,8 @@ class _Model:
         self.text: dict[int, bytes] = {}
         self.kind: dict[bytes, list[int]] = {}
         _, data = content.split(b"DATA;", 1)
-        for piece in re.split(rb";\s*\n#", data.split(b"ENDSEC;", 1)[0].strip()[1:]):
+        whole = data[: data.index(b"ENDSEC;")].strip()
+        for piece in re.split(rb";\s*\n#", whole[1:]):
             number, _, text = piece.partition(b"=")
             found = _TYPE.match(text)
             if found:

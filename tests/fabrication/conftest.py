@@ -19,7 +19,9 @@ from hypothesis import settings
 import fabrication as fab
 import gridshell as gs
 from fabrication import kernel_job
+from fabrication.bodies import structure_bodies
 from fabrication.cut import Slot, outline
+from fabrication.panel_structure import PanelStructure, PanelSystem, panel_structure
 from fabrication.unroll import Development
 from gridshell.mesh import grid_quads
 
@@ -271,3 +273,50 @@ def paraboloid() -> gs.ControlMesh:
     x, y = np.meshgrid(300.0 * np.arange(-6.0, 7.0), 300.0 * np.arange(-5.0, 6.0), indexing="ij")
     points = np.stack([x, y, (x**2 + y**2) / 10_000.0], axis=-1).reshape(-1, 3)
     return gs.control_mesh(gs.QuadMesh(points, grid_quads(12, 10)))
+
+
+# ---- planar nets ----------------------------------------------------------------------------
+
+SYSTEM = PanelSystem(
+    panels=fab.PanelSpec(gap=10.0, thickness=8.0, material=fab.GLASS, clearance=1.0),
+    plates=fab.PlateSection(-120.0, -10.0, 6.0, fab.S235, setback=16.0),
+    connectors=fab.ConnectorSpec(30.0, 90.0, 6.0, 0.3, 15.0),
+    connector_material=fab.STAINLESS,
+)
+
+
+def panelled(control: gs.ControlMesh, system: PanelSystem = SYSTEM) -> PanelStructure:
+    return panel_structure(gs.skin(control, gs.Skin.D1), system)
+
+
+@pytest.fixture(scope="session")
+def tower() -> PanelStructure:
+    """Three equal storeys' worth of parts around a hyperboloid, at 90 degrees."""
+    patch = gs.ConjugatePatch(v=(-0.4, 0.5), panels=(8, 3))
+    return panelled(gs.control_patch(gs.Hyperboloid(2000.0, 3000.0), patch))
+
+
+@pytest.fixture(scope="session")
+def leaning() -> PanelStructure:
+    """Panels at 70 degrees, so that plates are twisted."""
+    patch = gs.ConjugatePatch(u=(-0.3, 0.4), v=(-0.35, 0.3), panels=(4, 3))
+    start = gs.control_patch(gs.Enneper(5000.0), patch)
+    recipe = gs.pq_net(angle=radians(70.0), conditions=(gs.FlatRim(),))
+    return panelled(gs.optimize(start, recipe, anchor=gs.Free()).require().control)
+
+
+@pytest.fixture(scope="session")
+def bodies_file(tmp_path_factory: pytest.TempPathFactory) -> Callable[[PanelStructure], Path]:
+    """The STEP file of a structure, written once."""
+    written: dict[int, Path] = {}
+
+    def write(built: PanelStructure) -> Path:
+        if id(built) not in written:
+            from fabrication.export.step_bodies import write_bodies
+
+            path = tmp_path_factory.mktemp("bodies") / "structure.step"
+            write_bodies(structure_bodies(built), path, name="Käfig")
+            written[id(built)] = path
+        return written[id(built)]
+
+    return write

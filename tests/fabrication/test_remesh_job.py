@@ -10,7 +10,7 @@ from fabrication.errors import OutputError
 from fabrication.finding import Severity
 from fabrication.remesh_checks import MOST_QUADS, check_quads, require_few_quads
 from fabrication.remesh_job import GuideFile, Wish, lay, remesh, require_outputs, write_remeshed
-from fabrication.sections import MOST_NODES
+from fabrication.section_types import MOST_NODES
 from gridshell.mesh import grid_quads
 
 

@@ -82,3 +82,34 @@ def test_a_vertex_without_a_mirror_image_is_named(posed):
 def test_a_normal_needs_a_direction():
     with pytest.raises(gs.SettingError, match="direction"):
         gs.MirrorPlane([0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+
+
+# ---- a flat rim -------------------------------------------------------------------------------
+
+
+def ragged(control):
+    """The control mesh without one corner of its rectangle: a node there has three quads."""
+    centre = control.vertices[control.quads].mean(axis=1)
+    low, high = centre.min(axis=0), centre.max(axis=0)
+    kept = (centre[:, :2] < high[:2] - 0.4 * (high - low)[:2]).any(axis=1)
+    return gs.as_control_mesh(gs.QuadMesh(control.vertices, control.quads[kept]))
+
+
+def test_plates_are_flat_at_a_ragged_rim_too():
+    patch = gs.ConjugatePatch(u=(-0.5, 0.4), v=(-0.35, 0.5), panels=(6, 6))
+    control = ragged(gs.control_patch(gs.Enneper(5000.0), patch))
+    off = []
+    for conditions in ((), (gs.FlatRim(),)):
+        recipe = gs.pq_net(angle=np.pi / 2.0, conditions=conditions)
+        found = gs.optimize(control, recipe, anchor=gs.Free()).require()
+        mesh = gs.skin(found.control, gs.Skin.D1)
+        i, j = mesh.edges.T
+        run = (mesh.vertices[j] - mesh.vertices[i]) / mesh.edge_lengths[:, None]
+        volume = np.einsum("mc,mc->m", run, np.cross(mesh.axes[i], mesh.axes[j]))
+        off.append(np.abs(volume).max())
+    assert off[0] > 1e-7
+    assert off[1] < 1e-9
+
+
+def test_a_rim_without_such_a_node_has_nothing_to_flatten(posed):
+    assert len(residual(gs.FlatRim().term(posed), posed)) == 0

@@ -172,3 +172,59 @@ def test_the_rim_of_half_a_bay_must_lie_on_the_surface_too():
     patch = gs.AsymptoticPatch(p=(0.0, 1.5), q=(-1.5, 0.0), lamellas=(4, 4))
     with pytest.raises(gs.SettingError, match="infinity"):
         gs.control_patch(gs.Hyperboloid(900.0, 900.0), patch)
+
+
+# ---- panels along conjugate lines -------------------------------------------------------------
+
+
+def white_planarity(control):
+    return gs.net_quality(control, planarity=gs.Planarity.WHITE_FACES).face_planarity.max
+
+
+@pytest.mark.parametrize(
+    ("surface", "ring"),
+    [(gs.Catenoid(900.0), True), (gs.Hyperboloid(900.0, 1200.0), True), (gs.Sphere(900.0), False)],
+)
+def test_panels_along_the_circles_of_a_surface_of_revolution_are_flat(surface, ring):
+    control = gs.control_patch(
+        surface, gs.ConjugatePatch(v=(-0.5, 0.6), panels=(9, 4), u=None if ring else (0.0, 1.5))
+    )
+    assert white_planarity(control) < 1e-12
+    assert gs.node_angles(control) == pytest.approx(np.pi / 2.0, abs=1e-9)
+    assert len(gs.skin(control, gs.Skin.D1).faces) == 36
+    foot = surface.closest(control.vertices)
+    assert np.linalg.norm(foot.points - control.vertices, axis=1).max() < 1e-6
+
+
+def test_finer_panels_along_conjugate_lines_are_flatter():
+    coarse, fine = (
+        white_planarity(
+            gs.control_patch(
+                gs.Enneper(900.0), gs.ConjugatePatch(v=(-0.5, 0.4), panels=(n, n), u=(-0.5, 0.6))
+            )
+        )
+        for n in (4, 8)
+    )
+    assert fine < 0.3 * coarse
+
+
+def test_panels_face_the_surface_s_positive_side():
+    surface = gs.Sphere(900.0)
+    patch = gs.ConjugatePatch(v=(-0.5, 0.6), panels=(5, 4), u=(0.0, 1.5))
+    mesh = gs.skin(gs.control_patch(surface, patch), gs.Skin.D1)
+    normals = surface.closest(mesh.vertices).normals
+    assert (np.einsum("nc,nc->n", mesh.axes, normals) > 0.9).all()
+
+
+@pytest.mark.parametrize(
+    ("patch", "key"),
+    [
+        (lambda: gs.ConjugatePatch(v=(0.5, -0.5), panels=(4, 4)), "v"),
+        (lambda: gs.ConjugatePatch(v=(-0.5, 0.5), panels=(2, 4)), "panels"),
+        (lambda: gs.ConjugatePatch(v=(-0.5, 0.5), panels=(1, 4), u=(0.0, 1.0)), "panels"),
+    ],
+)
+def test_a_conjugate_patch_that_is_none_is_refused_by_its_key(patch, key):
+    with pytest.raises(gs.SettingError) as info:
+        patch()
+    assert info.value.where == key
