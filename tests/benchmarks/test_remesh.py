@@ -97,7 +97,7 @@ def test_asymptotic_nets_from_exact_curvature(name, quads):
     require_sound(result)
     assert off.mean() <= 0.25
     assert np.percentile(off, 95) <= 0.5
-    assert np.percentile(planar, 95) <= (0.0012 if quads >= 500 else 0.0025)
+    assert np.percentile(planar, 95) <= 0.0012
     assert result.report.edge_ratio[0] >= 0.5
     assert result.report.edge_ratio[2] <= 1.65
     assert result.report.coverage >= (1.0 - 1e-9 if name == "hypar" else 0.94)
@@ -114,8 +114,8 @@ def test_asymptotic_nets_from_triangles_alone(name):
     print("  (trial {} / {})".format(*TRIAL.get(name, ("-", "-"))), end="")
     require_sound(result)
     assert off.mean() <= 0.25
-    assert np.percentile(off, 95) <= (0.6 if name.startswith("freeform") else 0.5)
-    assert np.percentile(planar, 95) <= 0.0015
+    assert np.percentile(off, 95) <= 0.5
+    assert np.percentile(planar, 95) <= 0.0012
 
 
 @pytest.mark.parametrize("quads", [300, 700, 1500])
@@ -128,8 +128,8 @@ def test_the_cell_of_the_schwarz_surface(quads):
     require_sound(result)
     mesh = result.mesh
     assert sorted(mesh.valence[~mesh.on_boundary & (mesh.valence != 4)].tolist()) == [6] * 8
-    assert off.mean() <= (0.8 if quads < 500 else 0.6)
-    assert np.percentile(off, 95) <= (1.5 if quads < 500 else 1.2)
+    assert off.mean() <= 0.6
+    assert np.percentile(off, 95) <= 1.2
     if quads >= 700:
         assert np.percentile(planar, 95) <= 0.003
 
@@ -159,6 +159,12 @@ CONJUGATE = [
 ]
 
 
+SHORT = {("monkey", 300): 0.0037, ("monkey", 500): 0.0028, ("catenoid", 300): 0.0037}
+"""Where the quads miss the planarity wanted, 0.002 (0.0025 at 300): what they reach instead. The
+directions are right to 0.3 degrees there; it is the size of the quads beside the curvature's change,
+and falls with its square."""
+
+
 @pytest.mark.parametrize("quads", [300, 500, 1500])
 @pytest.mark.parametrize(("name", "degrees", "hand", "mean", "p95"), CONJUGATE)
 def test_conjugate_nets(name, degrees, hand, mean, p95, quads):
@@ -175,8 +181,9 @@ def test_conjugate_nets(name, degrees, hand, mean, p95, quads):
     )
     require_sound(result)
     assert off.mean() <= 0.25
-    assert np.percentile(off, 95) <= 0.8
-    assert np.percentile(planar, 95) <= (0.003 if quads >= 500 else 0.005)
+    assert np.percentile(off, 95) <= 0.5
+    flat = SHORT.get((name, quads), 0.002 if quads >= 500 else 0.0025)
+    assert np.percentile(planar, 95) <= flat
     assert near.mean() >= 0.9
 
 
