@@ -161,8 +161,8 @@ CONJUGATE = [
 
 SHORT = {("monkey", 300): 0.0037, ("monkey", 500): 0.0028, ("catenoid", 300): 0.0037}
 """Where the quads miss the planarity wanted, 0.002 (0.0025 at 300): what they reach instead. The
-directions are right to 0.3 degrees there; it is the size of the quads beside the curvature's change,
-and falls with its square."""
+directions are right to 0.3 degrees there; it is the size of the quads beside the change of the
+curvature, and falls with its square."""
 
 
 @pytest.mark.parametrize("quads", [300, 500, 1500])
