@@ -11,6 +11,7 @@ from .connector import Arm as Arm
 from .connector import Connector as Connector
 from .connector import ConnectorSpec as ConnectorSpec
 from .connector import connector_findings as connector_findings
+from .connector import connector_groups as connector_groups
 from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
 from .export.dxf import read_dxf as read_dxf
@@ -31,6 +32,7 @@ from .fitting import Fit as Fit
 from .fitting import fit as fit
 from .grouping import Group as Group
 from .grouping import Member as Member
+from .grouping import instance_frame as instance_frame
 from .joints import JOINTS as JOINTS
 from .joints import Joint as Joint
 from .joints import SlotJoint as SlotJoint
@@ -44,6 +46,7 @@ from .outlines import Frame as Frame
 from .package import run as run
 from .panel import Panel as Panel
 from .panel import PanelSpec as PanelSpec
+from .panel import panel_findings as panel_findings
 from .panel import panel_groups as panel_groups
 from .panel import panels as panels
 from .panel_loop import PanelClosure as PanelClosure

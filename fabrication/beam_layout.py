@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fabrication.outlines import Frame, is_simple, polygon_area
+from fabrication.outlines import Frame, is_simple
 from fabrication.stock import require_positive
 from gridshell import PanelMesh, SettingError
 from gridshell.arrays import Floats, frozen, unit
@@ -155,7 +155,7 @@ def _beam(mesh: PanelMesh, section: BeamSection, edge: int, mitres: Sequence[Sid
         _backs(section, start, mesh.axes[i], along, up),
         _backs(section, end, mesh.axes[j], -along, up),
     )
-    if not (is_simple(plan) and polygon_area(plan) > 0.0 and _runs_forward(plan)):
+    if not _sound(plan):
         raise SettingError(
             "A beam has nothing sound left between its nodes",
             where=f"beam B{edge + 1}, nodes {i} and {j}, {length:.1f} mm apart",
@@ -195,7 +195,8 @@ def _backs(
         if mitre is None:
             return 0.0
         across = np.cross(axis, np.cos(mitre) * level + sign * np.sin(mitre) * left)
-        return -sign * half * float(side @ across) / float(away @ across)
+        reach = float(away @ across)
+        return -sign * half * float(side @ across) / reach if reach else np.inf
 
     return back(end.left, 1.0), back(end.right, -1.0)
 
@@ -211,8 +212,10 @@ def _plan(
     return np.array(points)
 
 
-def _runs_forward(plan: Floats) -> bool:
-    """Whether both long edges, the pieces with the extreme y, run the right way."""
+def _sound(plan: Floats) -> bool:
+    """Whether it is a polygon and both long edges, the pieces with the extreme y, run forward."""
+    if not np.isfinite(plan).all():
+        return False
     lower = plan[plan[:, 1] == plan[:, 1].min()][:, 0]
     upper = plan[plan[:, 1] == plan[:, 1].max()][:, 0]
-    return bool(lower[1] > lower[0] and upper[1] < upper[0])
+    return bool(lower[1] > lower[0] and upper[1] < upper[0]) and is_simple(plan)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fabrication.grouping import Group, Member, equal_groups
+from fabrication.grouping import Group, equal_groups, instance_frame
 from fabrication.outlines import Frame
 from fabrication.panel_structure import (
     COLOURS,
@@ -115,10 +115,9 @@ def prisms(
         first = group.members[0].index
         shapes.append(Shape(marks[first], with_bulges(outlines[first]), *span))
         for member in group.members:
-            frame = placed_like(outlines[first], outlines[member.index], member)
-            bodies[member.index] = Body(
-                marks[member.index], number, seen_in(frames[member.index], frame)
-            )
+            here, outline = frames[member.index], outlines[member.index]
+            there = instance_frame(outlines[first][:, :2], outline[:, :2], here, member)
+            bodies[member.index] = Body(marks[member.index], number, there)
     return Prisms(name, tuple(shapes), tuple(bodies[i] for i in range(len(marks))))
 
 
@@ -127,35 +126,6 @@ def with_bulges(outline: Floats) -> Floats:
     if outline.shape[1] == 3:
         return outline
     return np.column_stack([outline, np.zeros(len(outline))])
-
-
-Turn = tuple[complex, complex, bool]
-"""z -> turn z + shift, and then mirrored at the x axis where the last is true."""
-
-
-def placed_like(first: Floats, other: Floats, member: Member) -> Turn:
-    """The motion that lays *first* over *other* (k, 2) as *member* says, by least squares."""
-    k, corner = len(first), np.arange(len(first))
-    way = (member.shift - corner) % k if member.mirrored else (corner + member.shift) % k
-    a = first[:, 0] + 1j * first[:, 1]
-    b = (other[:, 0] + 1j * other[:, 1])[way]
-    b = np.conj(b) if member.mirrored else b
-    turn = complex((np.conj(a - a.mean()) * (b - b.mean())).sum())
-    turn /= abs(turn)
-    return turn, complex(b.mean() - turn * a.mean()), member.mirrored
-
-
-def seen_in(frame: Frame, motion: Turn) -> Frame:
-    """The frame of the moved coordinates in space, when *motion* happens within *frame*."""
-    turn, shift, mirrored = motion
-    if mirrored:
-        turn, shift = turn.conjugate(), shift.conjugate()
-    side = -1j * turn if mirrored else 1j * turn
-
-    def along(z: complex) -> Floats:
-        return np.asarray(z.real * frame.x + z.imag * frame.y)
-
-    return Frame(frame.origin + along(shift), along(turn), along(side))
 
 
 def _panels(built: PanelStructure) -> Prisms:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fabrication.finding import Finding, Severity
+from fabrication.grouping import Group, equal_groups
 from fabrication.outlines import Frame
 from fabrication.stock import require_positive
 from gridshell import PanelMesh, SettingError
@@ -177,6 +178,12 @@ def connectors(mesh: PanelMesh, spec: ConnectorSpec) -> tuple[Connector, ...]:
 def connector_findings(made: Sequence[Connector]) -> tuple[Finding, ...]:
     """``connector-crowded`` where two slots leave too little between them."""
     return tuple(finding for connector in made for finding in _crowded(connector))
+
+
+def connector_groups(made: Sequence[Connector], tolerance: float) -> tuple[Group, ...]:
+    """Connectors whose sections are equal within *tolerance* mm, turned over or not: "K1", ..."""
+    sections = [connector.section()[:, :2] for connector in made]
+    return equal_groups(sections, tolerance, prefix="K", mirror=True)
 
 
 def connector_mark(node: int) -> str:

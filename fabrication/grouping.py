@@ -12,9 +12,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
+from fabrication.outlines import Frame
 from fabrication.stock import require_positive
 from gridshell.arrays import Floats
+
+Complex = npt.NDArray[np.complex128]
+"""Points of the plane as complex numbers."""
 
 
 @dataclass(frozen=True)
@@ -80,21 +85,52 @@ def group_names(marks: Sequence[str], groups: Sequence[Group]) -> Mapping[str, s
     return {marks[member.index]: group.name for group in groups for member in group.members}
 
 
+def instance_frame(first: Floats, outline: Floats, frame: Frame, member: Member) -> Frame:
+    """Where the first member of a group must be put to lie in another member's place.
+
+    Parameters
+    ----------
+    first, outline : (k, 2) outlines of the first member and of this one, mm.
+    frame : where *outline* lies in space.
+
+    Returns
+    -------
+    The frame for *first*. It is a rigid motion also for a mirrored member: the part is turned
+    over, and its normal is the other way round.
+    """
+    k = len(outline)
+    corner = np.arange(k)
+    numbers = member.shift - corner if member.mirrored else member.shift + corner
+    a, b = _complex(first), _complex(outline)[numbers % k]
+    towards, away = a - a.mean(), b - b.mean()
+    if member.mirrored:
+        towards = np.conj(towards)
+    turn = np.vdot(towards, away)
+    turn = turn / abs(turn) if abs(turn) > 0.0 else 1.0
+    x, y = turn, turn * (-1j if member.mirrored else 1j)
+    back = b.mean() - (a.mean().real * x + a.mean().imag * y)
+    return Frame(
+        frame.place(np.array([back.real, back.imag])),
+        x.real * frame.x + x.imag * frame.y,
+        y.real * frame.x + y.imag * frame.y,
+    )
+
+
 class _Firsts:
     """First members with one number of corners, as complex outlines about their means."""
 
     def __init__(self) -> None:
-        self.shapes: list[Floats] = []
+        self.shapes: list[Complex] = []
         self.spans: list[float] = []
         self.groups: list[int] = []
 
-    def add(self, shape: Floats, group: int) -> None:
+    def add(self, shape: Complex, group: int) -> None:
         self.shapes.append(shape)
         self.spans.append(_span(shape))
         self.groups.append(group)
 
     def match(
-        self, shape: Floats, tolerance: float, *, mirror: bool
+        self, shape: Complex, tolerance: float, *, mirror: bool
     ) -> tuple[int, int, bool, float] | None:
         """Group, shift, whether mirrored, deviation: of the first group that fits best."""
         # the root of the mean square of the corners' radii moves by at most the tolerance
@@ -122,10 +158,14 @@ class _Firsts:
         return self.groups[int(near[g])], way % k, way >= k, float(gap[g, way])
 
 
-def _centred(outline: Floats) -> Floats:
-    shape = outline[:, 0] + 1j * outline[:, 1]
+def _complex(outline: Floats) -> Complex:
+    return np.asarray(outline[:, 0] + 1j * outline[:, 1])
+
+
+def _centred(outline: Floats) -> Complex:
+    shape = _complex(outline)
     return np.asarray(shape - shape.mean())
 
 
-def _span(shape: Floats) -> float:
+def _span(shape: Complex) -> float:
     return float(np.sqrt((np.abs(shape) ** 2).mean()))

@@ -75,7 +75,11 @@ def optimize(
     rhombus: Annotated[bool, typer.Option("--rhombus", help="Equal diagonals (eq. 5).")] = False,
     square: Annotated[bool, typer.Option("--square", help="Rhombi at right angles.")] = False,
     reference: Annotated[
-        Path | None, typer.Option(metavar="S.obj", help="Surface to stay close to, same unit.")
+        Path | None,
+        typer.Option(
+            metavar="SURFACE",
+            help="Surface to stay close to, any that remesh reads, in the same unit or its own.",
+        ),
     ] = None,
     mode: Annotated[
         Mode,

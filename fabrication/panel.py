@@ -12,11 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fabrication.finding import Finding, Severity
 from fabrication.grouping import Group, equal_groups
 from fabrication.outlines import Frame, best_frame, corner_angles, inset, polygon_area
 from fabrication.stock import Material, require_positive
 from gridshell import PanelMesh, SettingError
 from gridshell.arrays import Floats, Points, frozen
+
+FLATNESS = 5e-5
+"""A panel counts as flat up to this distance from its plane over its longest diagonal."""
 
 _MM3_KG_PER_M3 = 1e-9
 
@@ -123,6 +127,28 @@ def panel_groups(
     mirror : whether a panel may be turned over; not for coated or printed sheets.
     """
     return equal_groups([p.outline for p in made], tolerance, prefix="G", mirror=mirror)
+
+
+def panel_findings(made: Sequence[Panel]) -> tuple[Finding, ...]:
+    """``panel-planarity``, an error, for every panel whose corners do not lie in a plane."""
+    found = []
+    for panel in made:
+        apart = panel.face[:, None] - panel.face[None]
+        limit = FLATNESS * float(np.linalg.norm(apart, axis=2).max())
+        if panel.planarity > limit:
+            found.append(
+                Finding(
+                    "panel-planarity",
+                    Severity.ERROR,
+                    panel.mark,
+                    panel.planarity,
+                    limit,
+                    "mm",
+                    f"The corners of {panel.mark} lie {panel.planarity:.3g} mm off any plane, and "
+                    "a flat panel does not fit. Optimise the net for planar quads, or triangulate.",
+                )
+            )
+    return tuple(found)
 
 
 def panel_mark(face: int) -> str:

@@ -17,6 +17,9 @@ MOST_QUADS = 100_000
 LEAST_COVERAGE = 0.9
 """Share of the surface under the mesh below which it is remarked, where it shall be covered."""
 
+CONCAVE = "concave-quads"
+"""Code of the finding that M itself, not its control mesh, cannot be optimised."""
+
 _INFO, _WARNING, _ERROR = Severity.INFO, Severity.WARNING, Severity.ERROR
 
 _KNOWN: dict[str, tuple[Severity, float, str]] = {
@@ -28,6 +31,9 @@ _KNOWN: dict[str, tuple[Severity, float, str]] = {
     "not-integrable": (_WARNING, 5.0, "degrees"),
     "angle-infeasible": (_WARNING, 0.0, "of the area"),
     "too-coarse": (_WARNING, 1.0, "quads"),
+    CONCAVE: (_WARNING, 0.0, "quads"),
+    "umbilic-hole": (_INFO, 0.0, "points"),
+    "singular-point-lost": (_WARNING, 0.0, "points"),
 }
 """Severity, limit and unit of remarks that are more than a note of what was mended."""
 
@@ -100,12 +106,8 @@ def _faults(made: gs.Quadrangulation) -> Iterator[Finding]:
 
 
 def _chart_faults(made: gs.Quadrangulation) -> Iterator[Finding]:
-    """Turned triangles of the chart, and quads that turn over or are concave."""
+    """Turned triangles of the chart, and cones it should not have."""
     flat, folded, cones = made.curved.mesh, made.chart.folded, made.chart.cones
-    spoilt = _unsound(made.mesh)
-    if spoilt is not None:
-        where, sentence = spoilt.where or "mesh", _sentence(spoilt)
-        yield Finding("unsound-quads", _WARNING, where, 1.0, 0.0, "", sentence)
     if len(folded):
         yield Finding(
             "chart-flips",
@@ -115,7 +117,7 @@ def _chart_faults(made: gs.Quadrangulation) -> Iterator[Finding]:
             0.0,
             "triangles",
             f"{len(folded)} triangles of the chart are turned over; lines may miss each other "
-            "there. Ask for more quads.",
+            "there. Ask for another number of quads.",
         )
     if len(cones):
         yield Finding(
@@ -126,7 +128,7 @@ def _chart_faults(made: gs.Quadrangulation) -> Iterator[Finding]:
             0.0,
             "vertices",
             f"{len(cones)} points of the chart have another valence than the directions. Ask for "
-            "more quads.",
+            "another number of quads.",
         )
 
 
@@ -149,22 +151,6 @@ def _finding(remark: gs.Remark) -> Finding:
     value = float(remark.value) if np.isfinite(remark.value) else 1.0
     where = remark.where or "surface"
     return Finding(remark.code, severity, where, value, limit, unit, f"{remark.message}.")
-
-
-def _unsound(mesh: gs.QuadMesh) -> gs.MeshError | None:
-    try:
-        gs.require_sound(mesh)
-    except gs.MeshError as error:
-        return error
-    return None
-
-
-def _sentence(error: gs.GridshellError) -> str:
-    value = "" if error.value is None else f": {error.value}"
-    return (
-        f"{error.what}{value}. It cannot be optimised as it is. At the rim, keep the mesh inside "
-        "the surface; at a singular point of valence 2, cut a hole into the surface."
-    )
 
 
 def _smallest_hole(mesh: gs.QuadMesh) -> str:

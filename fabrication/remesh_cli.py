@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from enum import StrEnum
 from math import isfinite, radians
 from pathlib import Path
@@ -122,7 +124,8 @@ def remesh(
     )
     remesh_job.require_outputs((out, report, control), pictures)
     try:
-        result = _found(surface, known, wish)
+        with _busy(quiet):
+            result = _found(surface, known, wish)
         remesh_job.write_remeshed(
             result,
             drawn,
@@ -141,6 +144,19 @@ def remesh(
         if quiet:
             typer.echo(f"gridshell: {_summary(result, out)}", err=True)
         raise typer.Exit(1)
+
+
+@contextmanager
+def _busy(quiet: bool) -> Iterator[None]:
+    """Something that moves on a terminal."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield
+        return
+    with console.status("remeshing"):
+        yield
 
 
 def _found(surface: Path, unit: gs.Unit | None, wish: Wish) -> Remeshed:

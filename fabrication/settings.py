@@ -18,7 +18,7 @@ from fabrication.remesh_settings import require_file, require_remeshable
 from fabrication.section_types import MOST_NODES, MaterialSection
 from fabrication.sections import ProfileSection, Project, SheetSection, SlotSection
 from fabrication.source_sections import (
-    AnalyticSurface,
+    AnalyticSection,
     AsymptoticPatchSection,
     ConjugatePatchSection,
     MeshSection,
@@ -43,7 +43,7 @@ _SURFACES: dict[str, Callable[..., gs.AnalyticSurface]] = {
 }
 
 
-def surface_of(section: AnalyticSurface) -> gs.AnalyticSurface:
+def surface_of(section: AnalyticSection) -> gs.AnalyticSurface:
     """The surface of ``[surface]``."""
     sizes = section.model_dump()
     return _SURFACES[sizes.pop("kind")](**sizes)

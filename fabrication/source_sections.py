@@ -100,7 +100,7 @@ SurfaceSection = Annotated[
     | FileSurface,
     Field(discriminator="kind"),
 ]
-AnalyticSurface = (
+AnalyticSection = (
     EnneperSurface
     | CatenoidSurface
     | HelicoidSurface
@@ -206,7 +206,7 @@ class RemeshSection(Section):
 class SurfaceSource:
     """A patch of an analytic surface."""
 
-    surface: AnalyticSurface
+    surface: AnalyticSection
     patch: PatchSection
 
 

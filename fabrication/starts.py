@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 from pathlib import Path
 
 import gridshell as gs
+from fabrication.remesh_checks import CONCAVE
 from fabrication.remesh_job import GuideFile, Remeshed, Wish, lay, read_wished
 from fabrication.sections import Project
 from fabrication.settings import patch_of, surface_of
@@ -77,7 +78,8 @@ def _remeshed(source: RemeshSource, folder: Path, stage: Stage) -> Start:
         raise _at("surface.unit", error) from None
     except gs.SettingError as error:
         raise _at(f"remesh.{error.where}", error) from None
-    return Start(control, found.made.reference, found)
+    about = tuple(f for f in found.findings if f.code != CONCAVE)  # C is judged when optimised
+    return Start(control, found.made.reference, replace(found, findings=about))
 
 
 def wish_of(section: RemeshSection, folder: Path = Path()) -> Wish:

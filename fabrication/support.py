@@ -40,7 +40,8 @@ class PlateSection:
     below, above : the long edges' places along the node axes, mm from the net; below < above.
     thickness : mm.
     material : what they are made of.
-    setback : from the node axis to the plate's end: the connector's radius, mm.
+    setback : from the node axis to the plate's end, mm: the radius at which the connector's slots
+        have their floors, or of what the plates are welded to.
 
     Raises
     ------
@@ -259,5 +260,6 @@ def _twisted(plate: SupportPlate, section: PlateSection) -> Iterator[Finding]:
         f"it in takes {cost.moment / 1000.0:.3g} N m at either end, {stress:.3g} N/mm2 and "
         f"{cost.edge_strain:.1e} of edge strain; {section.material.name} "
         f"{'bears' if bears else 'does not bear'} that ({strength:g} N/mm2). "
-        f"{advice} node angle of 90 degrees makes plates flat.{rim}",
+        f"{advice} node angle of 90 degrees makes plates flat; torsion-free axes do, too, "
+        f"but lean.{rim}",
     )

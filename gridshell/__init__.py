@@ -9,6 +9,8 @@ The pipeline, in the paper's words (Jiang, Wang, Schling and Pottmann, AAG 2020)
     net, _   = diagonal_meshes(result.require().control)        D1 and D2
     quality  = result.quality                                   what the net is judged by
 
+A surface from a file comes by ``read_design``; ``quadrangulate`` lays a quad mesh over it along two
+families of directions, and its ``control()`` is the control mesh, its ``reference`` the surface.
 A quad mesh drawn elsewhere enters through ``read_obj`` and ``as_control_mesh`` (its diagonals
 become the net) or ``control_mesh`` (its edges do). Lengths are mm, angles radians, arrays frozen.
 """

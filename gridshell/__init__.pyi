@@ -164,7 +164,9 @@ from .optimization import OptimizedNet as OptimizedNet
 from .optimization import optimize as optimize
 from .panel_families import PanelFamilies as PanelFamilies
 from .panel_families import cluster_panels as cluster_panels
+from .panel_families import own_variation as own_variation
 from .panel_families import panel_curvatures as panel_curvatures
+from .panel_families import panel_curvatures_from_mesh as panel_curvatures_from_mesh
 from .patch import (
     AsymptoticPatch as AsymptoticPatch,
 )
@@ -282,4 +284,6 @@ from .surface import tessellate as tessellate
 from .terms import (
     Planarity as Planarity,
 )
+from .torsion_free import TorsionFreeAxes as TorsionFreeAxes
+from .torsion_free import torsion_free_axes as torsion_free_axes
 from .verdict import Verdict as Verdict

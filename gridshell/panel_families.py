@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.arrays import Floats, Indices, frozen
+from gridshell.arrays import Floats, Indices, Points, frozen
 from gridshell.curvature import principal_curvatures
 from gridshell.errors import SettingError
-from gridshell.mesh import QuadMesh
+from gridshell.mesh import ControlMesh, PanelMesh
+from gridshell.surface import Surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,26 +77,67 @@ def cluster_panels(curvatures: Floats, radius: Floats | float, tolerance: float)
     return PanelFamilies(frozen(centre), frozen(mould_of, np.int64), frozen(apart * reach**2 / 2.0))
 
 
-def panel_curvatures(mesh: QuadMesh) -> tuple[Indices, Floats, Floats]:
-    """Curvatures of the panels of a curved quad mesh, estimated from the mesh alone.
+def panel_curvatures(mesh: PanelMesh, surface: Surface) -> tuple[Floats, Floats]:
+    """Curvatures and sizes of panels that are bent to a surface.
 
     Returns
     -------
-    faces : (n,) quads with a corner at which curvature can be estimated.
-    curvatures : (n, 2) mean over these corners, 1/mm.
-    radius : (n,) from the mean of a quad's corners to the furthest, mm.
+    curvatures : (f, 2) principal curvatures of *surface* at the middle of each panel, 1/mm.
+    radius : (f,) from the mean of a panel's corners to the furthest, mm.
     """
-    measured, kappa = principal_curvatures(mesh)
-    at = np.full((len(mesh.vertices), 2), np.nan)
-    at[measured] = kappa
-    corners = at[mesh.quads]
-    known = np.isfinite(corners[..., 0])
-    faces = np.flatnonzero(known.any(axis=1))
-    count = known[faces].sum(axis=1)[:, None]
-    mean = np.where(known[faces][..., None], corners[faces], 0.0).sum(axis=1) / count
-    points = mesh.vertices[mesh.quads[faces]]
-    away = points - points.mean(axis=1, keepdims=True)
-    return faces, mean, np.linalg.norm(away, axis=2).max(axis=1)
+    middle, radius = _places(mesh)
+    return np.asarray(surface.closest(middle).curvature), radius
+
+
+def panel_curvatures_from_mesh(mesh: PanelMesh, control: ControlMesh) -> tuple[Floats, Floats]:
+    """The same, estimated from the control mesh of a skin alone.
+
+    A panel takes the curvature of the nearest vertex at which two rings of neighbours tell it,
+    that of its middle for D1 and D2 away from the rim.
+
+    Raises
+    ------
+    SettingError
+        For a mesh too small to tell curvature anywhere.
+    """
+    from scipy.spatial import cKDTree
+
+    vertices, kappa = principal_curvatures(control.mesh)
+    if len(vertices) == 0:
+        raise SettingError(
+            "The mesh is too small to tell its curvature",
+            value=f"{len(control.quads)} quads",
+            advice="a finer mesh",
+        )
+    middle, radius = _places(mesh)
+    _, nearest = cKDTree(control.vertices[vertices]).query(middle)
+    return kappa[nearest], radius
+
+
+def own_variation(mesh: PanelMesh, curvatures: Floats, radius: Floats) -> float:
+    """By how much half of all panels depart from their own quadric at least, mm.
+
+    That is half the step in curvature from a panel to its neighbours. A tolerance below it asks
+    moulds to be truer than the panels are quadrics.
+
+    Returns
+    -------
+    The median over the edges between panels; 0 where there is none.
+    """
+    pairs = mesh.edge_faces[(mesh.edge_faces >= 0).all(axis=1)]
+    if len(pairs) == 0:
+        return 0.0
+    kappa = np.sort(curvatures, axis=1)
+    step = np.abs(kappa[pairs[:, 0]] - kappa[pairs[:, 1]]).max(axis=1)
+    return float(np.median(step / 2.0 * (radius[pairs] ** 2).mean(axis=1) / 2.0))
+
+
+def _places(mesh: PanelMesh) -> tuple[Points, Floats]:
+    inside = (mesh.faces >= 0)[..., None]
+    corners = mesh.vertices[mesh.faces]
+    middle = np.where(inside, corners, 0.0).sum(axis=1) / mesh.corners[:, None]
+    away = np.where(inside, corners - middle[:, None], 0.0)
+    return middle, np.asarray(np.linalg.norm(away, axis=2).max(axis=1))
 
 
 def _stabbed(low: Floats, high: Floats, start: float, end: float) -> Indices:

@@ -144,6 +144,31 @@ def test_hypar_lamellas_are_straight_and_as_long_as_their_chords(packages):
     assert report["net"]["iterations"] == 0
 
 
+@pytest.mark.xdist_group("examples")
+def test_a_step_face_becomes_lamellas_beside_it(packages):
+    report, out = packages("07_roof_from_step")
+    laid = report["remesh"]
+    assert (laid["non_quads"], laid["odd_valences"], laid["colour_conflicts"]) == (0, 0, 0)
+    assert laid["coverage"] > 0.95
+    assert laid["alignment_deg"]["max"] < 1.0
+    assert report["net"]["surface_distance_mm"]["mean"] < 1.0
+    assert report["structure"]["lamellas"] > 15
+    assert (out / "report.html").read_text().count("<figure>") == 6
+    assert list(report["timing"])[:2] == ["surface", "remesh"]
+
+
+@pytest.mark.xdist_group("examples")
+def test_a_boundary_curve_becomes_a_net_of_right_angles(packages):
+    report, out = packages("08_boundary_curve")
+    assert report["net"]["angle_error_deg"]["max"] < 1e-6
+    assert report["net"]["surface_distance_mm"]["max"] < 20.0
+    assert report["net"]["curvature_ratio"] == pytest.approx(-1.0, abs=0.02)
+    rim = np.loadtxt(EXAMPLES / "rim.csv", delimiter=",", comments="#") * 1e3
+    nodes = gs.read_net(out / "net.json").vertices
+    assert (nodes.max(axis=0) < rim.max(axis=0) + 20.0).all()
+    assert (np.ptp(nodes, axis=0) > 0.8 * np.ptp(rim, axis=0)).all()
+
+
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.stem)
 @pytest.mark.xdist_group("examples")
 def test_script_runs_and_does_the_same_job_as_the_project(path, tmp_path, packages):

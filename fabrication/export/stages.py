@@ -18,6 +18,7 @@ import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
 from fabrication.export.painter import Dots, Faces, Layer, Lines, View, bounds, hexadecimal, svg
+from fabrication.export.words import plural
 from gridshell.arrays import Floats, Indices
 from gridshell.surface import TriangleMesh
 
@@ -27,10 +28,14 @@ _TRIANGLES = 3_000
 _SEGMENTS = 700
 """Places where the pair of directions is drawn, about."""
 
+_MOST_FACES = 5_000
+"""Quads above which a mesh is drawn by its edges alone, over the surface."""
+
 HOTTEST = 5.0
 """Degrees off the directions that are drawn in the last colour of the heat map."""
 
 _PALE, _GREY, _INK = (0.95, 0.95, 0.93), (0.60, 0.62, 0.65), (0.11, 0.14, 0.18)
+_FAINT = (0.78, 0.80, 0.83)
 _SADDLE, _DOME = (0.35, 0.55, 0.78), (0.90, 0.60, 0.30)
 _RED, _BLUE = (0.80, 0.16, 0.14), (0.13, 0.34, 0.74)
 _VIOLET, _BLACK = (0.72, 0.58, 0.85), (0.25, 0.29, 0.34)
@@ -72,9 +77,9 @@ class _Skin:
 def stages(made: gs.Quadrangulation, net: gs.ControlMesh | None = None) -> tuple[Stage, ...]:
     """The pictures a to e, and f where there is an optimised *net*; d only where M holds a C."""
     skin = _skin(made.curved.mesh)
-    found = [_surface(made, skin), _directions(made, skin), _quads(made)]
+    found = [_surface(made, skin), _directions(made, skin), _quads(made, skin)]
     if made.report.control_quads:
-        found.append(_control(made))
+        found.append(_control(made, skin))
     found.append(_alignment(made, skin))
     if net is not None:
         found.append(_net(net))
@@ -177,11 +182,11 @@ def _directions(made: gs.Quadrangulation, skin: _Skin) -> Stage:
     )
 
 
-def _quads(made: gs.Quadrangulation) -> Stage:
+def _quads(made: gs.Quadrangulation, skin: _Skin) -> Stage:
     mesh = made.mesh
-    layers: list[Layer] = [_filled(mesh, _PALE), _edges(mesh, _GREY, 0.9)]
+    layers: list[Layer] = [_filled(mesh, skin), _edges(mesh, _GREY, 0.9)]
     legend: tuple[tuple[str, str], ...] = ()
-    if not made.report.colour_conflicts:
+    if not made.report.colour_conflicts and len(mesh.quads) <= _MOST_FACES:
         colour = gs.two_colouring(mesh)
         for number, paint in ((0, _RED), (1, _BLUE)):
             places = mesh.vertices[colour == number]
@@ -196,14 +201,18 @@ def _quads(made: gs.Quadrangulation) -> Stage:
     )
 
 
-def _control(made: gs.Quadrangulation) -> Stage:
+def _control(made: gs.Quadrangulation, skin: _Skin) -> Stage:
     control = made.control().mesh
+    fine = len(made.mesh.quads) > _MOST_FACES
+    layers: list[Layer] = [_filled(control, skin), _edges(control, width=0.5 if fine else 1.3)]
+    if not fine:
+        layers.insert(1, _edges(made.mesh, _FAINT, 0.7))
     return Stage(
         "d",
         "Control mesh C",
         f"{len(control.quads)} quads; the edges of M are its diagonals.",
-        (_filled(control, _PALE), _edges(made.mesh, (0.78, 0.80, 0.83), 0.7), _edges(control)),
-        ((_css(_INK), "edges of C"), (_css((0.78, 0.80, 0.83)), "edges of M")),
+        tuple(layers),
+        ((_css(_INK), "edges of C"), *(() if fine else ((_css(_FAINT), "edges of M"),))),
     )
 
 
@@ -222,13 +231,13 @@ def _alignment(made: gs.Quadrangulation, skin: _Skin) -> Stage:
         "e",
         "Alignment",
         f"Edges are off the directions by {stray.mean:.2f}° on average, {stray.p95:.2f}° for 95 of "
-        f"100, {stray.max:.1f}° at most; {len(spikes)} singular points"
+        f"100, {stray.max:.1f}° at most; {plural(len(spikes), 'singular point')}"
         f"{infeasible if report.infeasible_area else ''}.",
         tuple(layers),
         (
-            *((_css(c), f"{d:g}°") for c, d in zip(_HEAT, np.linspace(0, HOTTEST, 4), strict=True)),
+            *_heat_legend(),
             (_css(_GREY), "beyond the rim"),
-            (_css(_INK), "singular point"),
+            *(((_css(_INK), "singular point"),) if len(spikes) else ()),
             *(((_css(_VIOLET), "no such pair"),) if report.infeasible_area else ()),
         ),
     )
@@ -278,6 +287,12 @@ def _apart(points: Floats, step: float) -> Indices:
     return np.array(chosen, dtype=np.int64)
 
 
+def _heat_legend() -> list[tuple[str, str]]:
+    degrees = [f"{d:.2g}°" for d in np.linspace(0.0, HOTTEST, len(_HEAT))]
+    degrees[-1] += " and more"
+    return [(_css(colour), text) for colour, text in zip(_HEAT, degrees, strict=True)]
+
+
 def _edge_errors(made: gs.Quadrangulation, middles: Floats) -> Floats:
     """Degrees (m,) at the middles (m, 3) of M's edges; NaN for edges beyond the surface."""
     from scipy.spatial import cKDTree
@@ -308,8 +323,11 @@ def _pale(skin: _Skin) -> Faces:
     return Faces(skin.corners, _all(_PALE, len(skin.corners)))
 
 
-def _filled(mesh: gs.QuadMesh, colour: tuple[float, float, float]) -> Faces:
-    return Faces(mesh.vertices[mesh.quads], _all(colour, len(mesh.quads)))
+def _filled(mesh: gs.QuadMesh, skin: _Skin) -> Faces:
+    """The quads of *mesh*, or the surface where they are too many."""
+    if len(mesh.quads) > _MOST_FACES:
+        return _pale(skin)
+    return Faces(mesh.vertices[mesh.quads], _all(_PALE, len(mesh.quads)))
 
 
 def _edges(

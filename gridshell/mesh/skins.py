@@ -59,7 +59,7 @@ def skin(control: ControlMesh, which: Skin) -> PanelMesh:
     if which is Skin.PATTERN:
         pattern = checkerboard(control)
         a, b = control.mesh.edges.T
-        faces = np.vstack([_widened(pattern.black, pattern.white), pattern.white])
+        faces = _stacked(pattern.black, pattern.white)
         black = np.arange(len(faces)) < len(pattern.black)
         between = axes[a] + axes[b]
         rim = partial[a] | partial[b]
@@ -88,6 +88,9 @@ def node_axes(control: ControlMesh) -> tuple[Vectors, Mask]:
     return unit(normal), ~stars.closed
 
 
-def _widened(faces: Indices, like: Indices) -> Indices:
-    missing = max(0, like.shape[1] - faces.shape[1])
-    return np.pad(faces, ((0, 0), (0, missing)), constant_values=-1)
+def _stacked(first: Indices, second: Indices) -> Indices:
+    width = max(first.shape[1], second.shape[1])
+    padded = [
+        np.pad(f, ((0, 0), (0, width - f.shape[1])), constant_values=-1) for f in (first, second)
+    ]
+    return np.concatenate(padded)

@@ -17,8 +17,8 @@ from gridshell.remesh.extraction import Extracted
 from gridshell.remesh.lattice import AXES, cross
 from gridshell.surface.triangle_mesh import after
 
-_LEAST_SHARE = 0.05
-"""Of a cell's side: shorter ends at the rim are left out."""
+_LEAST_SHARE = 0.2
+"""Of the usual edge: a cell with a shorter side at the rim is left out."""
 
 _SHORTEST = 0.3
 """Of the edge before it: a line's end at the rim is kept this long, by moving its last crossing."""
@@ -106,18 +106,15 @@ def _completed(
         a, b, c = (cell[np.arange(len(one)), (k + i) % 4] for i in (1, 2, 3))
         total[cell[np.arange(len(one)), k]] = total[a] + total[c] - total[b]
     good = np.isfinite(total[quads]).all(axis=(1, 2))
-    corners = total[quads]
-    area = np.linalg.norm(
-        np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1
-    )
-    typical = total[whole] if len(whole) else corners
-    size = np.median(
-        np.linalg.norm(
-            np.cross(typical[:, 2] - typical[:, 0], typical[:, 3] - typical[:, 1]), axis=1
-        )
-    )
-    good &= area > (2.0 * _LEAST_SHARE if extent is Extent.TRIMMED else 0.0) * size
+    if extent is Extent.TRIMMED and (good.any() or len(whole)):
+        usual = np.median(_sides(total[whole if len(whole) else quads[good]]))
+        good &= _sides(total[quads]).min(axis=1) >= _LEAST_SHARE * usual
     return Cells(total, np.concatenate([whole, quads[good]]), len(whole))
+
+
+def _sides(corners: Floats) -> Floats:
+    """(q, 4) lengths of the sides of quads (q, 4, 3), mm."""
+    return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
 
 
 Key = tuple[int, int]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.arrays import Floats, Points
+from gridshell.arrays import Floats, Indices, Points
 from gridshell.errors import ColouringError, MeshError, SettingError
 from gridshell.field import (
     FieldReport,
@@ -18,20 +18,17 @@ from gridshell.field import (
     require_curvature,
     singularities,
 )
-from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, two_colouring
+from gridshell.mesh import ControlMesh, QuadMesh, control_mesh, main_piece, two_colouring
 from gridshell.remesh.directions import Conjugate, Directions
 from gridshell.remesh.extent import Extent, cells
 from gridshell.remesh.extraction import Extracted, extract
+from gridshell.remesh.findings import findings
 from gridshell.remesh.remesh_report import RemeshReport, Spike, Spread, coverage
 from gridshell.remesh.seamless import LADDER, Seamless, seamless
 from gridshell.remesh.tidying import require_around, tidy
 from gridshell.remesh.working_surface import Source, WorkingSurface, area_of, working_surface
 from gridshell.solve import Engine
 from gridshell.surface import CurvedMesh, Remark, Surface, TriangulatedSurface, lift
-
-_LEAST_LAM = 10.0
-_LARGEST_STRAY = 5.0
-"""Degrees: 95th percentile of the alignment beyond which the field counts as not integrable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +59,9 @@ class Quadrangulation:
     def control(self) -> ControlMesh:
         """The control mesh C: one colour of M's vertices, that of the singular ones (Fig. 6 d).
 
-        Its diagonals of family 1 follow the field's first direction.
+        Its diagonals of family 1 follow the field's first direction. Around a singular point of
+        valence 2 (an umbilic of index +1/2) two quads share two edges: one of them has a corner of
+        180 degrees or more and no planar net has it, so both are left out and a hole stays.
 
         Raises
         ------
@@ -70,7 +69,9 @@ class Quadrangulation:
             When M is too small or too narrow to hold one.
         """
         control = control_mesh(self.mesh)
-        return control if _begins_with(self.mesh, control) else control.families_exchanged()
+        if not _begins_with(self.mesh, control):
+            control = control.families_exchanged()
+        return _opened(control)
 
 
 def quadrangulate(
@@ -138,12 +139,25 @@ def quadrangulate(
         Spread.of(np.degrees(errors)),
         found,
         spacing,
+        turns.vertices,
         ready.remarks,
         time.perf_counter() - start,
     )
     return Quadrangulation(
         mesh, ready.reference, refined.curved, refined.field, chart, points, errors, report
     )
+
+
+def _opened(control: ControlMesh) -> ControlMesh:
+    """Without the quads around interior vertices of valence 2."""
+    mesh = control.mesh
+    narrow = (mesh.valence == 2) & ~mesh.on_boundary
+    kept = np.flatnonzero(~narrow[mesh.quads].any(axis=1))
+    if len(kept) == len(mesh.quads):
+        return control
+    kept = kept[main_piece(mesh.quads[kept])]
+    used, quads = np.unique(mesh.quads[kept], return_inverse=True)
+    return ControlMesh(QuadMesh(mesh.vertices[used], quads.reshape(-1, 4)), control.colour[used])
 
 
 def _begins_with(mesh: QuadMesh, control: ControlMesh) -> bool:
@@ -210,6 +224,7 @@ def _report(
     stray: Spread,
     found: Extracted,
     spacing: float,
+    singular: Indices,
     remarks: tuple[Remark, ...],
     seconds: float,
 ) -> RemeshReport:
@@ -244,7 +259,7 @@ def _report(
         integers=sum(len(i.integers) for i in integers),
         integers_exact=all(i.exact for i in integers),
         triangles=len(curved.mesh.triangles),
-        remarks=(*remarks, *_findings(chart, about, stray, control_quads)),
+        remarks=(*remarks, *findings(mesh, chart, about, stray, control_quads, singular)),
         seconds=seconds,
     )
 
@@ -259,35 +274,3 @@ def _colours(mesh: QuadMesh) -> tuple[int, int]:
         return 0, len(control_mesh(mesh).quads)
     except MeshError:
         return 0, 0
-
-
-def _findings(
-    chart: Seamless, about: FieldReport, stray: Spread, control_quads: int
-) -> list[Remark]:
-    found = []
-    if chart.lam <= _LEAST_LAM or stray.p95 > _LARGEST_STRAY:
-        found.append(
-            Remark(
-                "not-integrable",
-                f"the directions cannot be followed evenly: the edges are off by {stray.mean:.1f} "
-                f"degrees on average, {stray.p95:.1f} for the 95th of a hundred; try a hole at a "
-                "singular point, another angle, or a smaller part of the surface",
-                stray.p95,
-            )
-        )
-    if about.infeasible_area > 0.0:
-        effect = "; the angle has no effect anywhere" if about.infeasible_area > 1.0 - 1e-9 else ""
-        found.append(
-            Remark(
-                "angle-infeasible",
-                f"{about.infeasible_area:.1%} of the area has no such pair of directions; the "
-                f"angles reached are {np.degrees(about.angles[0]):.1f} to "
-                f"{np.degrees(about.angles[-1]):.1f} degrees{effect}",
-                about.infeasible_area,
-            )
-        )
-    if control_quads == 0:
-        found.append(
-            Remark("too-coarse", "the quads are too few to hold a control mesh; ask for more", 0.0)
-        )
-    return found

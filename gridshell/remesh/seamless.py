@@ -36,6 +36,9 @@ _AROUND = 4.0
 _FEW = 0.01
 """Share of the cells that folded triangles may spoil."""
 
+_WORTH = 0.25
+"""Of the spoilt cells that may be left for directions to be given up, where some stay spoilt."""
+
 _WRONG_CONE = 0.1
 """Difference of a chart's angle sum from the right one that counts, radians."""
 
@@ -93,7 +96,8 @@ def seamless(
     best: Seamless | None = None
     for lam, by_factor in ladder:
         found = work.rung(lam, by_factor)
-        if best is None or work.spoilt(found) < work.spoilt(best):
+        worth = 1.0 if lam == ladder[0][0] or work.spoilt(found) <= _FEW * work.cells else _WORTH
+        if best is None or work.spoilt(found) < worth * work.spoilt(best):
             best = found
         if work.spoilt(best) <= _FEW * work.cells:
             break
@@ -140,13 +144,16 @@ class _Work:
     def spoilt(self, chart: Seamless) -> float:
         """Cells that the chart's faults spoil.
 
-        Around folded triangles it is their share of the area, several times; a wrong cone where
-        nothing is folded is a singular vertex that the field does not have, and spoils all.
+        Around folded triangles it is their share of the area, several times. A wrong cone where
+        nothing is folded is a singular vertex that the field does not have, and a fold or a wrong
+        cone at a singular vertex one that the net will not have: any of them spoils all.
         """
         mesh = self.field.mesh
         beside = np.zeros(len(mesh.vertices), dtype=bool)
         beside[mesh.triangles[chart.folded]] = True
         wrong = np.count_nonzero(~beside[chart.cones])
+        beside[chart.cones] = True
+        wrong += np.count_nonzero(beside[self.turns.vertices])
         share = len(chart.folded) / len(mesh.triangles)
         return self.cells * (_AROUND * share + wrong)
 
@@ -157,9 +164,10 @@ class _Work:
         near = ring(mesh, self.turns.vertices, 2)
         lams[near] = np.minimum(lam, SOFT)
         weight = np.ones(len(mesh.triangles))
+        rises = self._rises(by_factor)
         best: Seamless | None = None
         for _ in range(_STIFFENINGS + 1):
-            found = self._solve(lams, weight, lam, by_factor)
+            found = self._solve(lams, weight, lam, rises)
             if best is None or self.spoilt(found) < self.spoilt(best):
                 best = found
             if self.spoilt(found) == 0.0:
@@ -171,16 +179,10 @@ class _Work:
         assert best is not None
         return best
 
-    def _solve(self, lams: Floats, weight: Floats, lam: float, by_factor: bool) -> Seamless:
-        mesh, field = self.field.mesh, self.field
-        signs = self.cut.signs
-        d1, d2 = (_flat(angle) * signs[:, None] for angle in (field.first, field.second))
+    def _solve(self, lams: Floats, weight: Floats, lam: float, rises: list[Floats]) -> Seamless:
+        mesh = self.field.mesh
         found: list[Coordinate] = []
-        for lines, across in ((d2, _turned(d2, -1.0)), (d1, _turned(d1, 1.0))):
-            rise = 1.0 / (self.spacing * np.sin(field.angle))
-            if by_factor:
-                covector = across * rise[:, None]
-                rise = rise * integrating_factor(mesh, covector, self.cut.flips)
+        for (lines, across), rise in zip(self._families(), rises, strict=True):
             target = Target(lines, across, rise, weight, lams)
             unknowns = self.unknowns[len(found)]
             found.append(coordinate(mesh, unknowns, target, self.engine))
@@ -191,12 +193,33 @@ class _Work:
             mesh,
             corners,
             self.cut.flips,
-            signs,
+            self.cut.signs,
             lam,
             np.flatnonzero(area <= 0.0),
             cones,
             (found[0], found[1]),
         )
+
+    def _families(self) -> list[tuple[Floats, Floats]]:
+        """Lines and what is across them, (f, 2) each: of u, constant along family 2, then of v."""
+        first, second = (
+            _flat(angle) * self.cut.signs[:, None]
+            for angle in (self.field.first, self.field.second)
+        )
+        return [(second, _turned(second, -1.0)), (first, _turned(first, 1.0))]
+
+    def _rises(self, by_factor: bool) -> list[Floats]:
+        """Derivatives wanted across both families, (f,) each, 1/mm; they make as many cells."""
+        mesh, sine = self.field.mesh, np.sin(self.field.angle)
+        rise = 1.0 / (self.spacing * sine)
+        if not by_factor:
+            return [rise, rise]
+        u, v = (
+            integrating_factor(mesh, across * rise[:, None], self.engine)
+            for _, across in self._families()
+        )
+        more = float(np.average(u * v, weights=mesh.areas / sine))
+        return [rise * factor / np.sqrt(more) for factor in (u, v)]
 
     def _wrong_cones(self, total: Floats) -> Indices:
         mesh = self.field.mesh

@@ -118,3 +118,34 @@ def test_the_trade_off_between_surface_and_net():
     # Enneper's own angles are 90 degrees: a net of 60 has to leave it, and must be allowed to
     assert reached["enneper", default.start][0]
     assert not reached["enneper", 100.0][0]
+
+
+@pytest.mark.parametrize(
+    ("name", "degrees", "directions"),
+    [("freeform", 60, gs.Conjugate(radians(60.0))), ("dome", 90, gs.Principal())],
+)
+def test_planar_rhombi_on_a_given_surface(name, degrees, directions):
+    """Planarity, angle and rhombi at once: a surface let go in time gives all, a held one none."""
+    found = remeshed(name, directions, 860)
+    control, size = found.control(), box(found)
+    print(
+        f"\n{name} {degrees}: pull  planarity  angle deg  rhombus   distance mean, max  converged"
+    )
+    reached = {}
+    for start in (0.01, 0.1, 1.0, 10.0):
+        for decay in (0.3, 1.0):
+            recipe = gs.pq_net(angle=radians(degrees), rhombus=True, steps=60)
+            pulled = replace(recipe, proximity=gs.Weight(start, decay))
+            net = gs.optimize(control, pulled, anchor=gs.Free(), reference=found.reference)
+            quality = net.quality
+            distance = quality.surface_distance_mm
+            reached[start, decay] = (net.converged, distance.mean / size)
+            print(
+                f"{'falling' if decay < 1 else 'constant':>9} {start:5g}  "
+                f"{quality.face_planarity.max:9.1e}  {quality.angle_error_deg.max:9.1e}  "
+                f"{quality.rhombus_error.max:7.1e}  {distance.mean / size:7.3%} "
+                f"{distance.max / size:6.2%}  {net.converged}"
+            )
+    assert reached[0.1, 0.3][0]
+    assert reached[0.1, 0.3][1] < 0.002
+    assert not reached[1.0, 1.0][0]

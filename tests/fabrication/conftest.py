@@ -239,6 +239,42 @@ def kernel_here(stand_in: SimpleNamespace) -> Iterator[None]:
         yield
 
 
+# ---- nets of planar quads -------------------------------------------------------------------
+
+
+def _dome(degrees: float) -> gs.ControlMesh:
+    """A dome of some 24 m whose D1 has about 700 panels with sides of a metre."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 39), np.linspace(-1, 1, 41), indexing="ij")
+    z = -0.35 * x**2 - 0.25 * y**2 + 0.05 * x * y**2
+    points = 12_000.0 * np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    start = gs.as_control_mesh(gs.QuadMesh(points, grid_quads(38, 40)))
+    recipe = gs.pq_net(angle=np.radians(degrees))
+    return gs.optimize(start, recipe, anchor=gs.Free()).require().control
+
+
+@pytest.fixture(scope="session")
+def principal_dome() -> gs.ControlMesh:
+    """Planar quads with a node angle of 90 degrees."""
+    return _dome(90.0)
+
+
+@pytest.fixture(scope="session")
+def oblique_dome() -> gs.ControlMesh:
+    """Planar quads with a node angle of 75 degrees."""
+    return _dome(75.0)
+
+
+@pytest.fixture(scope="session")
+def paraboloid() -> gs.ControlMesh:
+    """z = (x^2 + y^2) / (2 R), R = 5 m, swept along itself: exact parallelograms.
+
+    The edges of D1 and D2 run along x and y over 600 mm, and their axes are the surface's normals.
+    """
+    x, y = np.meshgrid(300.0 * np.arange(-6.0, 7.0), 300.0 * np.arange(-5.0, 6.0), indexing="ij")
+    points = np.stack([x, y, (x**2 + y**2) / 10_000.0], axis=-1).reshape(-1, 3)
+    return gs.control_mesh(gs.QuadMesh(points, grid_quads(12, 10)))
+
+
 # ---- planar nets ----------------------------------------------------------------------------
 
 SYSTEM = PanelSystem(

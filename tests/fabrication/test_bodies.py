@@ -1,9 +1,7 @@
 import numpy as np
 import pytest
 
-from fabrication.bodies import placed_like, seen_in, structure_bodies, with_bulges
-from fabrication.grouping import Member
-from fabrication.outlines import Frame
+from fabrication.bodies import structure_bodies, with_bulges
 
 
 def in_space(body, shapes, z):
@@ -46,23 +44,6 @@ def test_panels_lie_above_the_net_and_plates_on_both_sides_of_their_plane(tower)
         for kind in bodies.kinds
     ]
     assert spans == [{(0.0, 8.0)}, {(-3.0, 3.0)}, {(0.0, 90.0)}]
-
-
-@pytest.mark.parametrize("mirrored", [False, True])
-def test_a_turned_and_turned_over_part_is_found_again(mirrored):
-    rng = np.random.default_rng(3)
-    first = rng.normal(size=(5, 2)) * 100.0
-    flat = first[:, 0] + 1j * first[:, 1]
-    moved = flat * np.exp(0.7j) + 30.0 - 20.0j
-    moved = np.conj(moved) if mirrored else moved
-    corner = np.arange(5)
-    order = (3 - corner) % 5 if mirrored else (corner + 3) % 5
-    other = np.empty((5, 2))
-    other[order] = np.stack([moved.real, moved.imag], axis=1)
-    frame = Frame(np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
-    found = seen_in(frame, placed_like(first, other, Member(0, 3, mirrored, 0.0)))
-    assert found.place(first) == pytest.approx(frame.place(other)[order], abs=1e-9)
-    assert found.normal @ frame.normal == pytest.approx(-1.0 if mirrored else 1.0)
 
 
 def test_straight_outlines_have_no_bulge():

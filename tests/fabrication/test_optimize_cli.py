@@ -115,6 +115,23 @@ def test_a_reference_keeps_it_near(command, mesh, tmp_path):
     assert distance["mean"] < 10.0
 
 
+@pytest.mark.xdist_group("kernel")
+def test_a_step_face_is_a_reference_in_its_own_unit(command, mesh, tmp_path):
+    build123d = pytest.importorskip("build123d")
+    x, y = np.meshgrid(*[np.linspace(-1.1, 1.1, 8)] * 2, indexing="ij")
+    rows = 1000.0 * np.stack([x, y, saddle(x, y)], axis=-1)
+    face = build123d.Face.make_surface_from_array_of_points(
+        [[build123d.Vector(*p) for p in row] for row in rows.tolist()]
+    )
+    build123d.export_step(face, str(tmp_path / "s.step"))
+    mesh(saddle, noise=0.005)
+    options = ("--reference", "s.step", "-o", "o.obj", "--report", "r.json")
+    code, _, err = command("in.obj", "--unit", "m", *options)
+    assert code == 0, err
+    distance = json.loads((tmp_path / "r.json").read_text())["net"]["surface_distance_mm"]
+    assert distance["mean"] < 5.0
+
+
 def test_a_field_of_two_angles(command, mesh, tmp_path):
     mesh(saddle, 12, 12)
     options = ("--mode", "form", "--angle", "90:80", "-o", "o.obj", "--report", "r.json")

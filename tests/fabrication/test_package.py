@@ -431,6 +431,30 @@ def test_diagonals_of_an_exact_catenoid_become_lamellas(tmp_path):
     assert 2e3 < longest.outline.max() < 6e3
 
 
+def test_a_surface_from_a_file_becomes_lamellas_and_tells_how(tmp_path):
+    x, y = np.meshgrid(*[np.linspace(-1.5, 1.5, 25)] * 2, indexing="ij")
+    points = np.stack([x, y, 0.2 * (x * x - y * y)], axis=-1).reshape(-1, 3) * 1e3
+    in_metres(tmp_path / "roof.obj", gs.QuadMesh(points, grid_quads(24, 24)))
+    asked = project(
+        surface={"file": "roof.obj", "unit": "m"},
+        patch=None,
+        remesh={"directions": "asymptotic", "quads": 120},
+    )
+    stages = []
+    report = fab.run(asked, tmp_path / "out", folder=tmp_path, announce=stages.append)
+    assert stages[:3] == ["surface", "remesh", "optimise"]
+    assert list(report["timing"]) == stages
+    assert {f["severity"] for f in report["findings"]} <= {"info"}
+    assert report["remesh"]["quads"] > 60
+    assert report["remesh"]["alignment_deg"]["mean"] < 1.0
+    assert report["net"]["star_planarity"]["max"] < 1e-7
+    assert report["net"]["surface_distance_mm"]["max"] < 5.0
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert page.count("<figure>") == 6
+    assert "From the surface to the net" in page
+    assert set(content(tmp_path / "out")) >= FILES - {"sheets/sheet-02.dxf"}
+
+
 # ---- nets that cannot be built --------------------------------------------------------------
 
 

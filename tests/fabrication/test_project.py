@@ -24,7 +24,13 @@ HYPAR = {
 }
 MESH = {"file": "roof.obj", "unit": "m", "lamellas_along": "edges"}
 OWN = {"name": "corten", "modulus": 210e3, "strength": 355.0, "density": 7850.0}
+REMESH = {"directions": "asymptotic", "quads": 200}
 GONE = object()
+IMPORTED = {
+    "surface": {"file": "roof.step"},
+    "patch": GONE,
+    "remesh": REMESH,
+}
 
 
 @pytest.fixture(scope="module")
@@ -183,10 +189,16 @@ RING = {
 
 
 @pytest.mark.parametrize(
-    "changes", [{}, FULL, RING, {"surface": GONE, "patch": GONE, "mesh": MESH}]
+    "changes",
+    [
+        *({}, FULL, RING, {"surface": GONE, "patch": GONE, "mesh": MESH}, IMPORTED),
+        {**IMPORTED, "surface": {"file": "roof.obj", "unit": "m"}},
+        {**IMPORTED, "remesh": {"directions": "asymptotic", "edge": 300.0, "extent": "cover"}},
+    ],
 )
 def test_a_project_that_is_written_and_read_is_the_same(read, beside, changes):
     beside("roof.obj")
+    beside("roof.step")
     project = read(changes)
     assert read(text=fab.project_text(project)) == project
 
@@ -411,6 +423,50 @@ def test_a_wrong_mesh_section_is_named(refused, key, value):
     assert refused(changes).where.endswith(f", mesh.{key}")
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({**IMPORTED, "remesh": GONE}, "needs [remesh]; a quad mesh is named by [mesh]"),
+        ({**IMPORTED, "patch": HYPAR["patch"]}, "goes with [remesh], not with [patch]"),
+        ({"remesh": REMESH}, "[remesh] needs a [surface] with a file"),
+    ],
+)
+def test_sections_that_do_not_go_together_are_told(refused, changes, words):
+    assert words in refused(changes).what
+
+
+def test_a_surface_that_names_a_file_needs_no_kind(read, beside):
+    beside("roof.step")
+    source = read(IMPORTED).source
+    assert source.surface.file == "roof.step"
+    assert (source.remesh.directions, source.remesh.extent) == ("asymptotic", "inside")
+    assert read(IMPORTED).net.keep_to_surface
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("directions", "sideways", "remesh.directions; found 'sideways'; allowed: asymptotic, "),
+        ("quads", 0, "remesh.quads; found 0; allowed: >= 1"),
+        ("quads", 100_001, "remesh.quads; found 100001; allowed: <= 100000"),
+        ("quads", 1.5, "remesh.quads; found 1.5; allowed: a whole number"),
+        ("edge", 0.0, "remesh.edge; found 0.0; allowed: >= 0.001"),
+        ("angle", 180.0, "remesh.angle; found 180.0; allowed: < 180"),
+        ("hand", "both", "remesh.hand; found 'both'; allowed: left, right"),
+        ("infeasible", "no", "remesh.infeasible"),
+        ("extent", "all", "remesh.extent"),
+        ("guides", "g.csv", "remesh.guides; found 'g.csv'; allowed: a list of tables"),
+        ("guides", [{"file": "g.csv", "family": 3}], "remesh.guides.0.family; found 3"),
+        ("guides", [{"family": 1}], "remesh.guides.0.file"),
+        ("guides", [{"file": "g.csv", "famly": 1}], "Try: 'family'"),
+        ("quad", 3, "Unknown key"),
+    ],
+)
+def test_a_wrong_remesh_section_is_named(refused, beside, key, value, words):
+    beside("roof.step")
+    assert words in str(refused({**IMPORTED, "remesh": {**REMESH, key: value}}))
+
+
 # ---- several mistakes -----------------------------------------------------------------------
 
 
@@ -452,6 +508,19 @@ def outcome(read, changes):
 @given(st.dictionaries(st.sampled_from(KEYS), GARBAGE, min_size=1, max_size=4))
 def test_whatever_a_key_holds_it_is_accepted_or_told_in_one_line(read, changes):
     found = outcome(read, changes)
+    assert isinstance(found, fab.Project) or not re.search("\n|pydantic|[Ii]nput should", found)
+
+
+REMESH_KEYS = [
+    *("surface.file", "surface.unit", "surface.kind", "remesh", "patch"),
+    *(f"remesh.{key}" for key in ("directions", "angle", "hand", "quads", "edge", "guides")),
+]
+
+
+@given(st.dictionaries(st.sampled_from(REMESH_KEYS), GARBAGE, min_size=1, max_size=3))
+def test_whatever_a_remesh_holds_it_is_accepted_or_told_in_one_line(read, changes):
+    base = {"surface": {"file": "roof.step"}, "patch": GONE, "remesh": dict(REMESH)}
+    found = outcome(read, {**base, **changes})
     assert isinstance(found, fab.Project) or not re.search("\n|pydantic|[Ii]nput should", found)
 
 

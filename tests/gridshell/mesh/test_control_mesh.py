@@ -163,3 +163,16 @@ def test_a_mesh_too_narrow_for_a_control_mesh_is_refused():
     vertices = np.stack([i.ravel(), j.ravel(), 0.0 * i.ravel()], axis=1)
     with pytest.raises(gs.MeshError, match="too narrow"):
         gs.control_mesh(gs.QuadMesh(vertices, grid_quads(2, 6)))
+
+
+@pytest.mark.parametrize("valence", [2, 6, 8])
+@pytest.mark.parametrize("size", [4, 5, 6, 7])
+def test_d1_holds_the_singular_vertices_so_that_its_faces_are_quads(sectors, valence, size):
+    control = gs.control_mesh(sectors(valence, size))
+    inner = ~control.mesh.on_boundary & (control.mesh.valence > 0)
+    singular = inner & (control.mesh.valence != 4)
+    assert control.mesh.valence[singular].tolist() == [valence]
+    assert (control.colour[singular] == 0).all()
+    faces = gs.diagonal_meshes(control)[0].faces
+    assert len(faces)
+    assert ((faces >= 0).sum(axis=1) == 4).all()

@@ -113,12 +113,15 @@ def faults(mesh):
 
 
 def star_planarity(mesh):
-    """(k,) largest distance of the neighbours of interior vertices from the best plane through
-    them, over the mean edge of their star."""
+    """(k,) largest distance of the neighbours of a vertex from the best plane through it, over the
+    mean edge of its star; of vertices whose neighbours lie inside as well."""
     found = []
     for v in np.flatnonzero(~mesh.on_boundary & (mesh.valence > 0)):
         spokes = mesh.fans[v]
-        arms = mesh.vertices[mesh.target[spokes[spokes >= 0]]] - mesh.vertices[v]
+        around = mesh.target[spokes[spokes >= 0]]
+        if mesh.on_boundary[around].any():
+            continue  # what lies beyond the rim is continued, not known
+        arms = mesh.vertices[around] - mesh.vertices[v]
         normal = np.linalg.svd(arms)[2][2]
         found.append(np.abs(arms @ normal).max() / np.linalg.norm(arms, axis=1).mean())
     return np.array(found)
@@ -144,3 +147,9 @@ def crossing_points(mesh: QuadMesh):
     """Quads as sorted rows of positions: the mesh without its numbering."""
     rows = np.round(mesh.vertices[mesh.quads].mean(axis=1), 6)
     return rows[np.lexsort(rows.T)]
+
+
+def inner_strays(mesh, shapes_at, lines):
+    """As `strays`, of the edges with an end inside: what lies beyond the rim has no truth."""
+    a, b = mesh.edges.T
+    return strays(mesh, shapes_at, lines)[~(mesh.on_boundary[a] | mesh.on_boundary[b])]

@@ -7,7 +7,7 @@ and shape operator at any point, so that a quad mesh can be judged without the c
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -81,7 +81,19 @@ def saddle(x, y):
 
 
 def dome(x, y):
-    """A flat elliptic dome with two umbilics of index +1/2."""
+    """An elliptic paraboloid: two umbilics of index +1/2 at x = +-0.786."""
+    return (
+        -0.45 * x * x - 0.3 * y * y,
+        -0.9 * x,
+        -0.6 * y,
+        -0.9 + 0 * x,
+        0 * x,
+        -0.6 + 0 * x,
+    )
+
+
+def ridge(x, y):
+    """Two umbilics of index -1/2 on a line along which the families nearly change places."""
     return (
         -0.3 * x * x - 0.2 * y * y - 0.08 * (x**4 + y**4),
         -0.6 * x - 0.32 * x**3,
@@ -309,8 +321,15 @@ def closed_torus(wanted):
 class Case:
     """Triangles by their number, and (points) -> normals, shape operators of the exact surface."""
 
-    triangles: Callable[[float], CurvedMesh]
+    build: Callable[[float], CurvedMesh]
     shapes_at: Callable
+    _kept: dict = field(default_factory=dict)
+
+    def triangles(self, wanted):
+        """About so many triangles; made once."""
+        if wanted not in self._kept:
+            self._kept[wanted] = self.build(wanted)
+        return self._kept[wanted]
 
 
 def _formula(surface, over=None, holes=()):
@@ -347,7 +366,8 @@ CASES = {
     "saddle": _formula(Graph(saddle), _ROUND),
     "freeform": _formula(Graph(freeform)),
     "freeform with hole": _formula(Graph(freeform), None, (ParameterDisk(0.2, 0.1, 0.25),)),
-    "dome": _formula(Graph(dome, 1.3), ((-1.0, 1.0), (-1.3, 1.3))),
+    "dome": _formula(Graph(dome, 1.3), ((-1.3, 1.3), (-1.0, 1.0))),
+    "ridge": _formula(Graph(ridge, 1.3), ((-1.0, 1.0), (-1.3, 1.3))),
     "wave": _formula(Graph(wave)),
     "paraboloid": _formula(Graph(paraboloid), _ROUND),
     "punctured": _formula(Graph(paraboloid), _ROUND, (ParameterDisk(0.0, 0.0, 0.12),)),

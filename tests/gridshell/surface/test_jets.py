@@ -93,7 +93,8 @@ def test_moving_turning_and_scaling_moves_turns_and_scales(exact, seed, scale, o
     turn = Rotation.random(random_state=seed).as_matrix()
     moved = TriangleMesh(scale * case.mesh.vertices @ turn.T + scale * offset, case.mesh.triangles)
     first, second = curved_by_jets(case.mesh), curved_by_jets(moved)
-    tolerance = 1e-9 if offset == 0.0 else 1e-5
+    # the normal equations of a fit keep half of the digits: 1.5e-8
+    tolerance = 1.5e-8 if offset == 0.0 else 1e-5
     np.testing.assert_allclose(second.normals, first.normals @ turn.T, atol=tolerance)
     expected = turn @ first.shapes @ turn.T / scale
     size = np.abs(expected).max()
