@@ -73,7 +73,7 @@ class PanelRoute:
         """Panels on one of the three skins."""
         project = self.project
         with clock.stage("structure"):
-            mesh = gs.skin(control, _SKINS[project.net.skin])
+            mesh, lean = skin_and_lean(project, control)
             built = panelled(mesh, panel_system(project, self.panels))
             findings = built.findings()
         with clock.stage("parts"):
@@ -82,15 +82,22 @@ class PanelRoute:
             plates = nest([plate_piece(p) for p in built.plates], sheet_of(project.sheet))
             stars = nest(_stars(built), sheet_of(project.sheet))
             bodies = structure_bodies(built)
-        return PanelNetSystem(project, built, panels, plates, stars, bodies, findings)
+        return PanelNetSystem(project, built, lean, panels, plates, stars, bodies, findings)
 
 
 @dataclass(frozen=True, eq=False)
 class PanelNetSystem:
-    """Panels, plates and connectors, the sheets the flat ones lie on, and their solids."""
+    """Panels, plates and connectors, the sheets the flat ones lie on, and their solids.
+
+    Parameters
+    ----------
+    lean : largest angle between torsion-free axes and the normals they stand in for, radians;
+        None where the axes are the normals.
+    """
 
     project: Project
     built: PanelStructure
+    lean: float | None
     panel_sheets: tuple[NestedSheet, ...]
     plate_sheets: tuple[NestedSheet, ...]
     star_sheets: tuple[NestedSheet, ...]
@@ -118,7 +125,7 @@ class PanelNetSystem:
             solid = self._solids(cad)
         with clock.stage("closure"):
             control = gs.read_net(draft / "net.json")
-            mesh = gs.skin(control, _SKINS[self.project.net.skin])
+            mesh, _ = skin_and_lean(self.project, control)
             closed = asdict(panel_closure(mesh, self.built.system, drawn, solid.parts))
             supports = self._supports()
         return Written(
@@ -238,6 +245,7 @@ class PanelNetSystem:
             "twist_deg": {"max": max(degrees(abs(p.twist)) for p in plates)},
             "classical_out_of_plane_mm": {"max": max(p.out_of_plane for p in classical)},
             "classical_twist_deg": {"max": max(degrees(abs(p.twist)) for p in classical)},
+            **({} if self.lean is None else {"lean_deg": {"max": degrees(self.lean)}}),
             "flat": sum(p.flat for p in plates),
             "plates": len(plates),
             "height_mm": self._height,
@@ -247,6 +255,21 @@ class PanelNetSystem:
     def _height(self) -> float:
         section = self.built.system.plates
         return 0.0 if section is None else section.height
+
+
+def skin_and_lean(project: Project, control: gs.ControlMesh) -> tuple[gs.PanelMesh, float | None]:
+    """The skin with the node axes that the project asks for, and how far these lean, radians.
+
+    Raises
+    ------
+    MeshError
+        Where there are no torsion-free axes near the normals, as around a closed ring.
+    """
+    mesh = gs.skin(control, _SKINS[project.net.skin])
+    if project.supports is None or project.supports.axes == "normals":
+        return mesh, None
+    found = gs.torsion_free_axes(mesh)
+    return mesh.with_axes(found.axes), float(found.tilt.max())
 
 
 def _stars(built: PanelStructure) -> list[SheetPiece]:

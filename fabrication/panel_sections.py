@@ -27,6 +27,7 @@ class SupportsSection(Section):
     above: Place = 0.0
     thickness: Size
     material: SheetMetal = "S235"
+    axes: Literal["normals", "torsion-free"] = "normals"
     setback: Annotated[
         Distance | None,
         Field(description="the slot's floor of the connector; without connectors the thickness"),

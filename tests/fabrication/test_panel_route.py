@@ -292,3 +292,26 @@ def test_the_recipe_has_the_project_s_conditions_steps_and_tolerance():
     recipe = PanelRoute(content, content.panels).recipe()
     assert (recipe.angle, recipe.rhombus) == (pytest.approx(np.pi / 2.0), True)
     assert (recipe.stop.steps, recipe.stop.tolerance) == (12, 1e-7)
+
+
+# ---- torsion-free axes ----------------------------------------------------------------------
+
+TURNED = {
+    "surface": {"kind": "enneper", "scale": 5000.0},
+    "patch": {"layout": "conjugate", "u": (-0.3, 0.4), "v": (-0.35, 0.3), "panels": (4, 3)},
+    "net": {"kind": "planar", "angle": 70.0, "anchor": "free", "keep_to_surface": False},
+    "supports": {**SMALL["supports"], "axes": "torsion-free"},
+}
+
+
+def test_torsion_free_axes_make_plates_flat_at_any_angle_and_tell_their_lean(tmp_path):
+    report = fab.run(project(**TURNED), tmp_path / "out")
+    assert report["supports"]["out_of_plane_mm"]["max"] < 1e-4
+    assert 0.1 < report["supports"]["lean_deg"]["max"] < 30.0
+    assert report["closure"]["max_mm"] < 1e-3
+    assert report["findings"] == []
+    assert "Lean of the axes" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_axes_along_the_normals_have_no_lean_to_tell(done):
+    assert "lean_deg" not in done[0]["supports"]
