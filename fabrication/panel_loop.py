@@ -9,7 +9,7 @@ the best plane through its four corners: how far those are out of it is a figure
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,49 +85,42 @@ def panel_closure(
     flat = {part.mark: part for part in drawn}
     bent = {solid.mark: solid for solid in solids}
     wanted = [*_panels(mesh, system), *_plates(mesh, system.plates)]
-    return closed(
-        wanted, flat, bent, list(_connector_distances(mesh, system, flat, bent)), system, mesh
-    )
-
-
-def closed(
-    wanted: Sequence[Wanted],
-    flat: dict[str, DxfPart],
-    bent: dict[str, StepPrism],
-    others: Sequence[tuple[str, float]],
-    system: PanelSystem,
-    mesh: PanelMesh,
-) -> PanelClosure:
-    """The figures over flat parts and *others*, whose distances are known."""
-    marks: list[str] = []
-    sheet: list[float] = []
-    solid: list[float] = []
-    ppm = 0.0
-    for want in wanted:
-        if want.mark not in flat or want.mark not in bent:
-            raise FileError("A part is missing from the files", where=want.mark)
-        outline, body = flat[want.mark].outline, bent[want.mark]
-        laid, off = lay_over(outline, want)
-        ends = body.middle if want.centred else body.low
-        marks.append(want.mark)
-        sheet.append(off)
-        solid.append(corner_distance(laid, ends))
-        flat_volume = polygon_area(outline) * want.thickness
-        ppm = max(ppm, abs(flat_volume / body.volume() - 1.0) * 1e6)
-    distances = [*sheet, *solid, *(distance for _, distance in others)]
-    names = [*marks, *marks, *(mark for mark, _ in others)]
-    sheet_mm = max(sheet, default=0.0)
-    solid_mm = max([*solid, *(distance for _, distance in others)], default=0.0)
+    laid = [_laid(want, flat, bent) for want in wanted]
+    others = list(_connector_distances(mesh, system, flat, bent))
+    distances = [(d, part.mark) for part in laid for d in (part.sheet, part.solid)]
+    distances += [(distance, mark) for mark, distance in others]
+    largest, worst = max(distances, key=lambda pair: pair[0], default=(0.0, ""))
     return PanelClosure(
-        max_mm=max(sheet_mm, solid_mm),
-        sheet_mm=sheet_mm,
-        solid_mm=solid_mm,
-        worst=names[int(np.argmax(distances))] if names else "",
-        volume_ppm=float(ppm),
+        max_mm=largest,
+        sheet_mm=max((part.sheet for part in laid), default=0.0),
+        solid_mm=max([*(part.solid for part in laid), *(d for _, d in others)], default=0.0),
+        worst=worst,
+        volume_ppm=max((part.ppm for part in laid), default=0.0),
         panels=len(mesh.faces),
         plates=0 if system.plates is None else len(mesh.edges),
         connectors=len({mark for mark, _ in others}),
     )
+
+
+@dataclass(frozen=True)
+class _Laid:
+    """How far a part is from the net: its outline, its solid (mm), and its volume (ppm)."""
+
+    mark: str
+    sheet: float
+    solid: float
+    ppm: float
+
+
+def _laid(want: Wanted, flat: Mapping[str, DxfPart], bent: Mapping[str, StepPrism]) -> _Laid:
+    if want.mark not in flat or want.mark not in bent:
+        raise FileError("A part is missing from the files", where=want.mark)
+    outline, body = flat[want.mark].outline, bent[want.mark]
+    placed, off = lay_over(outline, want)
+    ends = body.middle if want.centred else body.low
+    volume = polygon_area(outline) * want.thickness
+    ppm = abs(volume / body.volume() - 1.0) * 1e6
+    return _Laid(want.mark, off, corner_distance(placed, ends), ppm)
 
 
 def lay_over(outline: Floats, want: Wanted) -> tuple[Points, float]:
@@ -195,8 +188,8 @@ def _flattened(corners: Points) -> Points:
 def _connector_distances(
     mesh: PanelMesh,
     system: PanelSystem,
-    flat: dict[str, DxfPart],
-    bent: dict[str, StepPrism],
+    flat: Mapping[str, DxfPart],
+    bent: Mapping[str, StepPrism],
 ) -> Iterator[tuple[str, float]]:
     """Of every cylinder or star plate: of its solid, and of its flat outline where it has one."""
     if system.connectors is None:
