@@ -17,6 +17,7 @@ from fabrication.delivery import draft_folder, move_in
 from fabrication.finding import Finding
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.lamella_route import LamellaRoute
+from fabrication.moulds import moulds
 from fabrication.net_checks import check_net
 from fabrication.panel_route import PanelRoute
 from fabrication.remesh_job import Remeshed
@@ -143,6 +144,7 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
         **({} if design.remeshed is None else {"remesh": design.remeshed.section()}),
         "net": design.net,
         **written.sections,
+        **_moulds(project, design.control),
         "findings": [
             {**asdict(f), "severity": f.severity.value}
             for f in (*design.findings, *written.findings)
@@ -155,6 +157,13 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")
     return report
+
+
+def _moulds(project: Project, control: gs.ControlMesh) -> Report:
+    if project.moulds is None:
+        return {}
+    which = gs.Skin.PATTERN if project.net.skin == "P" else gs.Skin[project.net.skin]
+    return {"moulds": moulds(control, which, project.moulds.tolerance)}
 
 
 def _pictures(design: _Design) -> Sequence[Report]:

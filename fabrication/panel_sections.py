@@ -62,6 +62,12 @@ class StarSection(SlottedSection):
 ConnectorSection = Annotated[CylinderSection | StarSection, Field(discriminator="kind")]
 
 
+class MouldsSection(Section):
+    """Moulds for panels bent to the surface: how many, within *tolerance* mm."""
+
+    tolerance: Size
+
+
 class FacadeSection(Section):
     """Flat triangles, two per bay of an asymptotic net, and profiles along its diagonals."""
 

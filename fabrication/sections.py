@@ -14,6 +14,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from fabrication.panel_sections import (
     ConnectorSection,
     FacadeSection,
+    MouldsSection,
     PanelsSection,
     SupportsSection,
 )
@@ -95,6 +96,7 @@ class Project(Section):
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None
     connector: ConnectorSection | None = None
+    moulds: MouldsSection | None = None
     sheet: SheetSection
     panel_sheet: SheetSection | None = None
 

@@ -13,7 +13,16 @@ Report = dict[str, Any]
 def summary_lines(report: Report) -> list[str]:
     """What was built and how well, by the kind of net."""
     lines: Callable[[Report], list[str]] = _planar if "panels" in report["structure"] else _strips
-    return lines(report)
+    return [*lines(report), *_moulds(report.get("moulds"))]
+
+
+def _moulds(found: Report | None) -> list[str]:
+    if found is None:
+        return []
+    return [
+        f"bent to the surface, {plural(found['panels'], 'panel')} would need "
+        f"{plural(found['moulds'], 'mould')} within {number(found['tolerance_mm'], 2)} mm"
+    ]
 
 
 def _strips(report: Report) -> list[str]:

@@ -105,6 +105,8 @@ def test_rhombi_at_70_degrees_cost_a_twist_that_is_told(packages):
     assert report["net"]["rhombus_error"]["max"] < 1e-6
     assert {f["code"] for f in report["findings"]} == {"support-twist"}
     assert 1.0 < report["supports"]["out_of_plane_mm"]["max"] < 4.0
+    assert report["moulds"]["panels"] == report["structure"]["panels"]
+    assert 1 < report["moulds"]["moulds"] < report["moulds"]["panels"]
 
 
 @pytest.mark.parametrize(
