@@ -31,6 +31,7 @@ FILES = ("net.json", "net.obj", "parts.csv", "report.html", "report.json", "stru
 _STALE = (
     *(f"sheets/{name}-*.dxf" for name in ("sheet", "panels", "plates", "stars")),
     "facade.step",
+    "beams.csv",
 )
 
 _ANCHORS: dict[str, gs.Anchor] = {

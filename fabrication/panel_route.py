@@ -9,6 +9,7 @@ from math import degrees, radians
 from pathlib import Path
 
 import gridshell as gs
+from fabrication.beam_layout import Beam, BeamSection, beams
 from fabrication.bodies import Bodies, structure_bodies
 from fabrication.errors import KernelError
 from fabrication.finding import Finding
@@ -76,13 +77,14 @@ class PanelRoute:
             mesh, lean = skin_and_lean(project, control)
             built = panelled(mesh, panel_system(project, self.panels))
             findings = built.findings()
+            along = _beams(project, mesh)
         with clock.stage("parts"):
             stock = sheet_of(project.panel_sheet or project.sheet)
             panels = nest([panel_piece(p) for p in built.panels], stock)
             plates = nest([plate_piece(p) for p in built.plates], sheet_of(project.sheet))
             stars = nest(_stars(built), sheet_of(project.sheet))
             bodies = structure_bodies(built)
-        return PanelNetSystem(project, built, lean, panels, plates, stars, bodies, findings)
+        return PanelNetSystem(project, built, lean, panels, plates, stars, bodies, findings, along)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +105,11 @@ class PanelNetSystem:
     star_sheets: tuple[NestedSheet, ...]
     bodies: Bodies
     findings: Sequence[Finding]
+    beams: tuple[Beam, ...]
 
     def write(self, draft: Path, cad: Kernel, clock: Clock) -> Written:
         """Sheets, cut list and STEP, read back and laid over the net of ``net.json``."""
+        from fabrication.export.beam_schedule import write_beam_schedule
         from fabrication.export.dxf import read_dxf
         from fabrication.export.panel_schedule import write_panel_schedule
         from fabrication.panel_loop import panel_closure
@@ -120,6 +124,8 @@ class PanelNetSystem:
                 self.plate_sheets,
                 self.star_sheets,
             )
+            if self.beams:
+                write_beam_schedule(draft / "beams.csv", self.beams)
             drawn = [part for path in files for part in read_dxf(path)]
         with clock.stage("solids"):
             solid = self._solids(cad)
@@ -217,6 +223,7 @@ class PanelNetSystem:
             "panels": len(built.panels),
             "plates": len(built.plates),
             "connectors": len(built.connectors),
+            "beams": len(self.beams),
             "nodes": len(built.mesh.vertices),
             "panel_groups": len(built.panel_groups),
             "plate_groups": len(built.plate_groups),
@@ -270,6 +277,13 @@ def skin_and_lean(project: Project, control: gs.ControlMesh) -> tuple[gs.PanelMe
         return mesh, None
     found = gs.torsion_free_axes(mesh)
     return mesh.with_axes(found.axes), float(found.tilt.max())
+
+
+def _beams(project: Project, mesh: gs.PanelMesh) -> tuple[Beam, ...]:
+    section = project.beams
+    if section is None:
+        return ()
+    return beams(mesh, BeamSection(section.width, section.height, section.setback))
 
 
 def _stars(built: PanelStructure) -> list[SheetPiece]:

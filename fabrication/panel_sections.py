@@ -62,6 +62,16 @@ class StarSection(SlottedSection):
 ConnectorSection = Annotated[CylinderSection | StarSection, Field(discriminator="kind")]
 
 
+class BeamsSection(Section):
+    """Rectangular beams along the edges of a planar net, mitred or set back at the nodes."""
+
+    width: Size
+    height: Size
+    setback: Annotated[
+        Distance, Field(description="from the node, where connectors join the beams")
+    ] = 0.0
+
+
 class MouldsSection(Section):
     """Moulds for panels bent to the surface: how many, within *tolerance* mm."""
 

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from fabrication.panel_sections import (
+    BeamsSection,
     ConnectorSection,
     FacadeSection,
     MouldsSection,
@@ -96,6 +97,7 @@ class Project(Section):
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None
     connector: ConnectorSection | None = None
+    beams: BeamsSection | None = None
     moulds: MouldsSection | None = None
     sheet: SheetSection
     panel_sheet: SheetSection | None = None
@@ -159,7 +161,7 @@ class Project(Section):
 
 _SECTIONS = {
     "asymptotic": ("profile", "joint", "facade"),
-    "planar": ("panels", "supports", "connector"),
+    "planar": ("panels", "supports", "connector", "beams"),
 }
 _NEEDED = {"asymptotic": ("profile", "joint"), "planar": ("panels",)}
 _ALONG = {"asymptotic": "lamellas_along", "planar": "panels_along"}

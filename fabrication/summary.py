@@ -53,6 +53,8 @@ def _planar(report: Report) -> list[str]:
         parts.append(plural(built["plates"], "support plate"))
     if built["connectors"]:
         parts.append(plural(built["connectors"], "connector"))
+    if built.get("beams"):
+        parts.append(plural(built["beams"], "beam"))
     lines = [
         f"{', '.join(parts)}, {mass(built['mass_kg'])} on {plural(built['sheets'], 'sheet')}; "
         f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",

@@ -101,7 +101,9 @@ def test_every_bay_of_the_glazed_net_has_two_triangles(packages):
 
 @pytest.mark.xdist_group("examples")
 def test_rhombi_at_70_degrees_cost_a_twist_that_is_told(packages):
-    report, _ = packages("10_rhombus_panels_70")
+    report, folder = packages("10_rhombus_panels_70")
+    lines = (folder / "beams.csv").read_text().splitlines()
+    assert len(lines) - 1 == report["structure"]["beams"] == report["structure"]["plates"]
     assert report["net"]["rhombus_error"]["max"] < 1e-6
     assert {f["code"] for f in report["findings"]} == {"support-twist"}
     assert 1.0 < report["supports"]["out_of_plane_mm"]["max"] < 4.0
