@@ -106,7 +106,7 @@ def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Desi
     begun = start(project, folder, clock.stage)
     with clock.stage("optimise"):
         recipe = route.recipe()
-        result = _optimise(project, recipe, begun).require()
+        result = _found(_optimise(project, recipe, begun), begun)
         quality = gs.net_quality(
             result.control,
             planarity=route.planarity,
@@ -125,6 +125,29 @@ def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Desi
         findings=[*laid, *about_net, *system.findings],
         remeshed=begun.remeshed,
     )
+
+
+_CAUSES = ("angle-infeasible", "not-integrable")
+"""Findings of the remeshing that explain why no net is found."""
+
+
+def _found(result: gs.OptimizedNet, begun: Start) -> gs.OptimizedNet:
+    """*result* when it is the net that was asked for; else told with what the surface said."""
+    try:
+        return result.require()
+    except gs.SolveError as error:
+        laid = () if begun.remeshed is None else begun.remeshed.findings
+        causes = [f for f in laid if f.code in _CAUSES]
+        if not causes:
+            raise
+        told = " ".join(f"{f.message} [{f.where}]" for f in causes)
+        raise gs.SolveError(
+            error.what,
+            where=error.where,
+            value=error.value,
+            limit=error.limit,
+            advice=f"to mend what the surface does not allow: {told}",
+        ) from None
 
 
 def _optimise(project: Project, recipe: gs.NetRecipe, begun: Start) -> gs.OptimizedNet:

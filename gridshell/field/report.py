@@ -26,6 +26,8 @@ class FieldReport:
     valences : (k,) edges of the quad mesh that meet there, 4 - 4 times the index.
     infeasible_area : where the surface has no pair as asked for and a substitute stands; at 1 the
         angle asked for has no effect on a widened field.
+    worst : (3,) where the substitute's angle is furthest from what holds elsewhere, mm; None
+        without infeasible area.
     angles : (5,) the angle between the lines at 0, 5, 50, 95 and 100 % of the area, rad.
     umbilic_area : where curvature does not tell directions apart.
     hand : which of the two mirror-symmetric pairs, where there was a choice.
@@ -35,6 +37,7 @@ class FieldReport:
     indices: Floats
     valences: Indices
     infeasible_area: float
+    worst: Points | None
     angles: Floats
     umbilic_area: float
     hand: Hand | None
@@ -49,10 +52,21 @@ def field_report(curved: CurvedMesh, field: FrameField, *, hand: Hand | None = N
         indices=found.indices,
         valences=found.valence,
         infeasible_area=float(areas[field.infeasible].sum()),
+        worst=_worst(field),
         angles=_percentiles(field.angle, areas),
         umbilic_area=float(areas[umbilic(curved)].sum()),
         hand=hand,
     )
+
+
+def _worst(field: FrameField) -> Points | None:
+    bad = np.flatnonzero(field.infeasible)
+    if len(bad) == 0:
+        return None
+    kept = field.angle[~field.infeasible]
+    usual = float(np.median(kept)) if len(kept) else float(field.angle.min())
+    furthest = bad[np.argmax(np.abs(field.angle[bad] - usual))]
+    return np.asarray(field.mesh.centroids[furthest])
 
 
 def _percentiles(values: Floats, shares: Floats) -> Floats:

@@ -88,8 +88,10 @@ def findings(
                 "angle-infeasible",
                 f"{about.infeasible_area:.1%} of the area has no such pair of directions; the "
                 f"angles reached are {np.degrees(about.angles[0]):.1f} to "
-                f"{np.degrees(about.angles[-1]):.1f} degrees{effect}",
+                f"{np.degrees(about.angles[-1]):.1f} degrees, and only the one nearest to 90 of "
+                f"these is possible everywhere{effect}",
                 about.infeasible_area,
+                None if about.worst is None else place(about.worst),
             )
         )
     if control_quads == 0:

@@ -1,5 +1,7 @@
 import csv
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
@@ -7,9 +9,10 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication import lamella_route, routes
+from fabrication import lamella_route, package, routes
 from fabrication.cut import area
 from fabrication.errors import KernelError, OutputError, StockError
+from fabrication.finding import Finding, Severity
 from gridshell.mesh import grid_quads
 
 pytestmark = [pytest.mark.xdist_group("kernel"), pytest.mark.usefixtures("kernel_here")]
@@ -626,3 +629,20 @@ def test_an_output_that_is_refused_costs_no_work(tmp_path, name):
     with pytest.raises(OutputError):
         fab.run(project(), tmp_path / "out", announce=stages.append)
     assert stages == []
+
+
+def test_a_net_that_is_not_found_is_told_with_what_the_surface_does_not_allow():
+    def require():
+        raise gs.SolveError("Not converged", advice="more steps")
+
+    result = SimpleNamespace(require=require)
+    cause = Finding(
+        "angle-infeasible", Severity.WARNING, "there", 0.4, 0.0, "", "no such pair on 40 %"
+    )
+    other = replace(cause, code="noise", message="noisy")
+    begun = SimpleNamespace(remeshed=SimpleNamespace(findings=(other, cause)))
+    with pytest.raises(gs.SolveError, match=r"does not allow: no such pair on 40 % \[there\]"):
+        package._found(result, begun)
+    for remeshed in (None, SimpleNamespace(findings=(other,))):
+        with pytest.raises(gs.SolveError, match="more steps"):
+            package._found(result, SimpleNamespace(remeshed=remeshed))

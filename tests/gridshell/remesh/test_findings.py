@@ -37,6 +37,7 @@ def said(
     )
     about = SimpleNamespace(
         infeasible_area=infeasible,
+        worst=points[3] if infeasible else None,
         angles=np.radians([40, 50, 60, 70, 80.0]),
         valences=np.array(valences, dtype=np.int64),
         positions=points[: len(valences)],
@@ -63,6 +64,7 @@ def test_an_angle_the_surface_does_not_have(share, effect):
     assert "40.0 to 80.0 degrees" in found.message
     assert ("no effect" in found.message) == effect
     assert found.value == share
+    assert found.where == "(1, 0, 0) mm"
 
 
 def test_holes_of_the_control_mesh():
