@@ -8,8 +8,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from gridshell.arrays import Floats, Points, Vectors, frozen
-from gridshell.errors import InputError
+from gridshell.arrays import Floats, Indices, Points, Vectors, frozen
+from gridshell.errors import InputError, SurfaceError
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,5 +79,24 @@ def checked_points(points: npt.ArrayLike) -> Points:
             where=f"point {bad[0]}",
             value=str(array[bad[0]]),
             limit="finite coordinates, mm",
+        )
+    return array
+
+
+def checked_triangles(triangles: npt.ArrayLike, vertices: int) -> Indices:
+    """Return *triangles* as a read-only (f, 3) array of indices of so many *vertices*.
+
+    Raises
+    ------
+    SurfaceError
+        When the shape is another, there are none, or an index names no vertex.
+    """
+    array = frozen(triangles, np.int64)
+    right = array.ndim == 2 and array.shape[1] == 3 and len(array) > 0
+    if not right or array.min() < 0 or array.max() >= vertices:
+        raise SurfaceError(
+            "A surface needs triangles over its vertices",
+            value=f"shape {array.shape}",
+            limit=f"(f, 3) with indices 0 .. {vertices - 1}",
         )
     return array

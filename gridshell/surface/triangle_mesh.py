@@ -13,7 +13,7 @@ import numpy as np
 
 from gridshell.arrays import Floats, Indices, Mask, Points, Vectors, frozen, unit
 from gridshell.errors import SurfaceError
-from gridshell.surface.surface import checked_points
+from gridshell.surface.surface import checked_points, checked_triangles
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,14 +39,8 @@ class TriangleMesh:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(checked_points(self.vertices)))
-        object.__setattr__(self, "triangles", frozen(self.triangles, np.int64))
-        n, t = len(self.vertices), self.triangles
-        if t.ndim != 2 or t.shape[1:] != (3,) or len(t) == 0 or t.min() < 0 or t.max() >= n:
-            raise SurfaceError(
-                "A surface needs triangles over its vertices",
-                value=f"shape {t.shape}",
-                limit=f"(f, 3) with indices 0 .. {n - 1}",
-            )
+        triangles = checked_triangles(self.triangles, len(self.vertices))
+        object.__setattr__(self, "triangles", triangles)
         object.__setattr__(self, "twin", frozen(self._twins(), np.int64))
         self._check_fans()
 

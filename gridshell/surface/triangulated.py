@@ -16,7 +16,7 @@ import numpy as np
 from gridshell.arrays import Floats, Indices, Points, Vectors, frozen, unit
 from gridshell.errors import SurfaceError
 from gridshell.surface.forms import dot
-from gridshell.surface.surface import Foot, checked_points
+from gridshell.surface.surface import Foot, checked_points, checked_triangles
 
 _FIRST_CANDIDATES = 8
 _UNUSUAL = 1.5
@@ -49,14 +49,8 @@ class TriangulatedSurface:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(checked_points(self.vertices)))
-        object.__setattr__(self, "triangles", frozen(self.triangles, np.int64))
-        n, t = len(self.vertices), self.triangles
-        if t.ndim != 2 or t.shape[1:] != (3,) or len(t) == 0 or t.min() < 0 or t.max() >= n:
-            raise SurfaceError(
-                "A surface needs triangles over its vertices",
-                value=f"shape {t.shape}",
-                limit=f"(f, 3) with indices 0 .. {n - 1}",
-            )
+        triangles = checked_triangles(self.triangles, len(self.vertices))
+        object.__setattr__(self, "triangles", triangles)
         area = np.linalg.norm(self._crosses, axis=1)
         size = float(np.ptp(self.vertices, axis=0).max())
         empty = np.flatnonzero(area <= 1e-14 * size**2)
