@@ -4,7 +4,6 @@ from .beam_layout import Beam as Beam
 from .beam_layout import BeamEnd as BeamEnd
 from .beam_layout import BeamSection as BeamSection
 from .beam_layout import beams as beams
-from .bodies import Bodies as Bodies
 from .bodies import structure_bodies as structure_bodies
 from .checks import check as check
 from .connector import Arm as Arm
@@ -14,6 +13,7 @@ from .connector import connector_findings as connector_findings
 from .connector import connector_groups as connector_groups
 from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
+from .cut import Relief as Relief
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.report import write_report as write_report
@@ -33,9 +33,15 @@ from .fitting import fit as fit
 from .grouping import Group as Group
 from .grouping import Member as Member
 from .grouping import instance_frame as instance_frame
+from .jointed import BillLine as BillLine
+from .jointed import Feature as Feature
+from .jointed import Fixture as Fixture
+from .jointed import Jointed as Jointed
 from .joints import JOINTS as JOINTS
+from .joints import DoubleSlotJoint as DoubleSlotJoint
 from .joints import Joint as Joint
 from .joints import SlotJoint as SlotJoint
+from .joints import StarWasher as StarWasher
 from .lamella import Lamella as Lamella
 from .loop import Closure as Closure
 from .loop import closure as closure
@@ -56,9 +62,11 @@ from .panel_structure import PanelSystem as PanelSystem
 from .panel_structure import panelled as panelled
 from .parts import FlatPart as FlatPart
 from .parts import flat_parts as flat_parts
+from .parts import parts_of as parts_of
 from .project import project_text as project_text
 from .project import read_project as read_project
 from .sections import Project as Project
+from .shapes import Bodies as Bodies
 from .sheet_parts import panel_piece as panel_piece
 from .sheet_parts import plate_piece as plate_piece
 from .sheet_parts import star_piece as star_piece

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fabrication.bodies import Bodies, structure_bodies
+from fabrication.bodies import structure_bodies
 from fabrication.export.dxf import DxfPart, read_dxf, write_dxf
 from fabrication.export.panel_schedule import schedule_rows
 from fabrication.export.schedule import Line
@@ -29,6 +29,7 @@ from fabrication.panel_sections import FacadeSection
 from fabrication.panel_settings import panel_spec
 from fabrication.panel_structure import PanelStructure, PanelSystem
 from fabrication.routes import CLOSURE_LIMIT, VOLUME_LIMIT, Report, loop_findings
+from fabrication.shapes import Bodies
 from fabrication.sheet_parts import panel_piece
 from fabrication.stock import Sheet
 from fabrication.structures import Structure

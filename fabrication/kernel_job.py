@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from fabrication.bodies import Bodies
 from fabrication.errors import KernelError
 from fabrication.parts import FlatPart
+from fabrication.shapes import Bodies
 from fabrication.structures import Structure
 from gridshell import GridshellError
 

@@ -94,6 +94,32 @@ def _arc_lengths(spline: CubicSpline, knots: Floats) -> Floats:
     return np.asarray((np.linalg.norm(spline(s, 1), axis=2) * half) @ _GAUSS_W)
 
 
+def curve_beside(lamella: Lamella, *, across: float, along: float) -> tuple[AxisCurve, CubicSpline]:
+    """The curve at a distance from a lamella's axis, parametrised by its own arc length.
+
+    Parameters
+    ----------
+    across, along : distances along b and along n, mm.
+
+    Returns
+    -------
+    The curve, with the feet of the lamella's nodes as its stations; and the spline that takes
+    stations of the lamella to stations of the curve.
+    """
+    knots = lamella.axis.spline.x
+    flat = np.ones_like(knots)
+    points = lamella.place(knots, across * flat, along * flat)
+    closed = lamella.closed
+    if closed:
+        points[-1] = points[0]
+    boundary = "periodic" if closed else "not-a-knot"
+    arcs = np.r_[0.0, np.cumsum(_arc_lengths(CubicSpline(knots, points, bc_type=boundary), knots))]
+    arcs -= arcs[np.searchsorted(knots, 0.0)]
+    stations = CubicSpline(knots, arcs)
+    curve = CubicSpline(arcs, points, bc_type=boundary)
+    return AxisCurve(curve, frozen(stations(lamella.axis.stations)), closed), stations
+
+
 @dataclass(frozen=True, eq=False)
 class Frames:
     """Frames along an axis: rows of points and right-handed unit vectors t, b, n."""

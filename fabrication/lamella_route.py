@@ -19,7 +19,7 @@ from fabrication.fitting import Fit, fit
 from fabrication.joints import SlotJoint
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.nesting import NestedSheet, nest
-from fabrication.parts import FlatPart, flat_parts
+from fabrication.parts import FlatPart, parts_of
 from fabrication.routes import (
     CLOSURE_LIMIT,
     VOLUME_LIMIT,
@@ -69,10 +69,11 @@ class LamellaRoute:
             built = structure(skin, profile_of(self.profile), overhang=self.profile.overhang)
         with clock.stage("parts"):
             joint = SlotJoint(self.joint.clearance, self.joint.depth_clearance)
-            parts = flat_parts(built, joint)
+            jointed = joint.build(built)
+            parts = parts_of(jointed)
             sheets = nest(parts, sheet_of(self.project.sheet))
             facade = self._facade(skin, built)
-            findings = (*joint.findings(built), *check(built, parts))
+            findings = (*jointed.findings, *check(built, parts))
         return LamellaSystem(self.project, joint, built, parts, sheets, facade, findings)
 
     def _facade(self, net: gs.DiagonalMesh, built: Structure) -> FacadeSystem | None:

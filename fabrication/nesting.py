@@ -27,6 +27,10 @@ class SheetPart(Protocol):
         """
 
     @property
+    def circles(self) -> Floats:
+        """(m, 3) rows x, y, diameter of round holes, mm."""
+
+    @property
     def labels(self) -> tuple[Label, ...]:
         """Texts to engrave."""
 

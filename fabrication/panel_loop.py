@@ -202,7 +202,7 @@ def _connector_distances(
             raise FileError("A connector is missing from the files", where=piece.mark)
         yield piece.mark, corner_distance(piece.frame.place(corners), bent[piece.mark].low)
         if system.star is not None:
-            yield piece.mark, _turned_distance(flat[piece.mark].outline, corners)
+            yield piece.mark, _turned_distance(flat[piece.mark].outline[:, :2], corners)
 
 
 def _turned_distance(outline: Floats, corners: Floats) -> float:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import gridshell as gs
 from fabrication.beam_layout import Beam, BeamSection, beams
-from fabrication.bodies import Bodies, structure_bodies
+from fabrication.bodies import structure_bodies
 from fabrication.errors import KernelError
 from fabrication.finding import Finding
 from fabrication.grouping import group_names
@@ -33,6 +33,7 @@ from fabrication.routes import (
 )
 from fabrication.sections import Project
 from fabrication.settings import sheet_of
+from fabrication.shapes import Bodies
 from fabrication.sheet_parts import SheetPiece, panel_piece, plate_piece, star_piece
 from fabrication.support import SupportPlate
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from fabrication.cut import Slot, area, outline
+import numpy as np
+
+from fabrication.cut import SQUARE, Edge, Hole, Relief, Slot, area, face_outlines, outline
+from fabrication.jointed import Jointed
 from fabrication.joints import Joint
 from fabrication.structures import Structure
 from fabrication.unroll import Development, unroll
 from gridshell import SettingError
 from gridshell.arrays import Floats
+
+_LETTER = 0.9
+"""Width of a letter over its height."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +41,14 @@ class FlatPart:
     Parameters
     ----------
     mark : the lamella's.
-    outline : (k, 2) closed, counter-clockwise, strip coordinates, mm.
+    outline : (k, 2), or (k, 3) with bulges where slots have rounded floors: closed,
+        counter-clockwise, strip coordinates, mm.
     slots : in order along the strip.
     labels : the own mark and the partner's mark at each slot.
     width, thickness : mm.
     development : where it came from.
+    holes : in order along the strip.
+    bevels : how much longer the near face is than the far one at either end, see ``Cuts``, mm.
     """
 
     mark: str
@@ -49,6 +58,8 @@ class FlatPart:
     width: float
     thickness: float
     development: Development
+    holes: tuple[Hole, ...] = ()
+    bevels: tuple[float, float] = (0.0, 0.0)
 
     @property
     def length(self) -> float:
@@ -57,23 +68,49 @@ class FlatPart:
 
     @property
     def area(self) -> float:
-        """Net area after cutting, mm2."""
-        return area(self.outline)
+        """Net area after cutting, without bevels, mm2."""
+        return area(self.outline) - sum(hole.area for hole in self.holes)
+
+    @property
+    def circles(self) -> Floats:
+        """(m, 3) rows x, y, diameter of the holes, mm."""
+        return np.array([[h.x, h.y, h.diameter] for h in self.holes]).reshape(-1, 3)
+
+    @property
+    def faces(self) -> tuple[Floats, Floats]:
+        """Outlines of the near (+b) and of the far face; the outline itself at square ends."""
+        return face_outlines(self.outline, self.bevels)
+
+    @property
+    def volume(self) -> float:
+        """Of the finished strip, mm3."""
+        bevelled = sum(abs(run) for run in self.bevels) * self.width / 2.0
+        return (self.area - bevelled) * self.thickness
 
 
 def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
-    """One part per lamella, in the structure's order.
+    """One part per strip that *joint* makes on *structure*; see :func:`parts_of`."""
+    return parts_of(joint.build(structure))
+
+
+def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
+    """One part per strip, in their order.
+
+    Parameters
+    ----------
+    relief : of the floors of all slots.
 
     Raises
     ------
     SettingError
         When slots run into each other or out of the strip.
     """
-    cuts = joint.cuts(structure)
-    width, thickness = structure.profile.width, structure.profile.thickness
+    profile = jointed.strips.profile
+    width, thickness = profile.width, profile.thickness
     parts = []
-    for lamella in structure.lamellas:
-        slots = cuts[lamella.mark]
+    for lamella in jointed.strips.lamellas:
+        cuts = jointed.cuts[lamella.mark]
+        slots = tuple(replace(slot, relief=relief) for slot in cuts.slots)
         _require_room(lamella.mark, slots, lamella.length)
         developed = unroll(lamella, width)
         parts.append(
@@ -85,6 +122,8 @@ def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
                 width=width,
                 thickness=thickness,
                 development=developed,
+                holes=cuts.holes,
+                bevels=cuts.bevels,
             )
         )
     return tuple(parts)
@@ -92,7 +131,7 @@ def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
 
 def _require_room(mark: str, slots: Sequence[Slot], length: float) -> None:
     """Refuse slots that run into each other or out of the strip: there is no part to cut."""
-    walls = [0.0, *(w for s in slots for w in (s.x - s.width / 2, s.x + s.width / 2)), length]
+    walls = [0.0, *(w for s in slots for w in (s.x - s.spread, s.x + s.spread)), length]
     for i, (a, b) in enumerate(pairwise(walls)):
         if i % 2 == 0 and not a < b:
             beside = [s.node for s in slots[max(0, i // 2 - 1) : i // 2 + 1]]
@@ -109,12 +148,15 @@ def _labels(
     mark: str, developed: Development, slots: Sequence[Slot], width: float
 ) -> tuple[Label, ...]:
     """Partner marks in the uncut half behind each slot; the own mark beside the first node."""
-    height = min(width / 8.0, 10.0)
+    largest = min(width / 8.0, 10.0)
     labels = []
-    for slot in slots:
-        behind = 0.2 * width if slot.edge.value == "upper" else 0.8 * width
-        labels.append(Label(slot.partner, slot.x, behind, height))
-    first = developed.node_x[0]
-    following = developed.node_x[1] if len(developed.node_x) > 1 else developed.length
-    labels.insert(0, Label(mark, (first + following) / 2.0, width / 2.0, 1.5 * height))
+    for k, slot in enumerate(slots):
+        beside = [abs(slot.x - s.x) for s in (*slots[max(k - 1, 0) : k], *slots[k + 1 : k + 2])]
+        room = 0.9 * min(beside, default=np.inf) / (_LETTER * len(slot.partner))
+        behind = 0.2 * width if slot.edge is Edge.UPPER else 0.8 * width
+        labels.append(Label(slot.partner, slot.x, behind, min(largest, room)))
+    inside = [x for x in developed.node_x.tolist() if 0.0 <= x <= developed.length]
+    first = inside[0] if inside else 0.0
+    following = inside[1] if len(inside) > 1 else developed.length
+    labels.insert(0, Label(mark, (first + following) / 2.0, width / 2.0, 1.5 * largest))
     return tuple(labels)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fabrication.bodies import Shape
 from fabrication.errors import KernelError
+from fabrication.shapes import Shape
 from fabrication.solid import KERNEL_ERRORS
 from gridshell.arrays import Floats
 
@@ -22,7 +22,7 @@ try:
     from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
     from OCP.GC import GC_MakeArcOfCircle
     from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
-    from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
+    from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 except ImportError as error:  # pragma: no cover - depends on the machine
     raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
 
@@ -36,12 +36,12 @@ def prism(shape: Shape) -> TopoDS_Shape:
         When the kernel cannot make it or does not find it valid; the part is named.
     """
     try:
-        wire = BRepBuilderAPI_MakeWire()
-        for a, b in zip(shape.outline, np.roll(shape.outline, -1, axis=0), strict=True):
-            wire.Add(_edge(a, b, shape.low))
         plane = gp_Pln(gp_Pnt(0.0, 0.0, shape.low), gp_Dir(0.0, 0.0, 1.0))
-        face = BRepBuilderAPI_MakeFace(plane, wire.Wire()).Face()
-        solid = BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, shape.high - shape.low)).Shape()
+        face = BRepBuilderAPI_MakeFace(plane, _wire(shape.outline, shape.low))
+        for opening in shape.openings:
+            face.Add(TopoDS.Wire_s(_wire(opening, shape.low).Reversed()))
+        up = gp_Vec(0.0, 0.0, shape.high - shape.low)
+        solid = BRepPrimAPI_MakePrism(face.Face(), up).Shape()
     except KERNEL_ERRORS as error:
         raise KernelError(
             "The kernel cannot make a solid", where=shape.mark, value=str(error)
@@ -49,6 +49,14 @@ def prism(shape: Shape) -> TopoDS_Shape:
     if not BRepCheck_Analyzer(solid).IsValid():
         raise KernelError("The kernel refuses a solid", where=shape.mark)
     return solid
+
+
+def _wire(outline: Floats, z: float) -> TopoDS_Wire:
+    """The closed wire of an outline with bulges at height *z*."""
+    wire = BRepBuilderAPI_MakeWire()
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        wire.Add(_edge(a, b, z))
+    return wire.Wire()
 
 
 def _edge(a: Floats, b: Floats, z: float) -> TopoDS_Edge:

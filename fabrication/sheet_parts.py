@@ -7,7 +7,7 @@ every side of a panel stands the mark of the neighbour, near every end of a plat
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -37,6 +37,7 @@ class SheetPiece:
         (0, 0) .. (length, width), mm.
     labels : own mark and neighbours'.
     length, width, thickness : mm.
+    circles : (m, 3) rows x, y, diameter of round holes, mm.
     """
 
     mark: str
@@ -45,11 +46,12 @@ class SheetPiece:
     length: float
     width: float
     thickness: float
+    circles: Floats = field(default_factory=lambda: np.zeros((0, 3)))
 
     @property
     def area(self) -> float:
         """Mm2."""
-        return outline_area(self.outline)
+        return outline_area(self.outline) - float((np.pi / 4.0 * self.circles[:, 2] ** 2).sum())
 
 
 def panel_piece(panel: Panel) -> SheetPiece:

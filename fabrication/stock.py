@@ -21,6 +21,18 @@ def require_positive(key: str, value: float) -> None:
         )
 
 
+def require_distance(key: str, value: float) -> None:
+    """Raise SettingError unless *value* is nought or more, and finite."""
+    if not (np.isfinite(value) and value >= 0.0):
+        raise SettingError(
+            "A distance cannot be negative",
+            where=key,
+            value=f"{value:g} mm",
+            limit=">= 0",
+            advice="check the sign",
+        )
+
+
 @dataclass(frozen=True)
 class Material:
     """An elastic material.
@@ -139,10 +151,7 @@ class Sheet:
         for key in ("length", "width"):
             require_positive(key, getattr(self, key))
         for key in ("margin", "gap"):
-            if not (np.isfinite(getattr(self, key)) and getattr(self, key) >= 0.0):
-                raise SettingError(
-                    "A distance cannot be negative", where=key, value=f"{getattr(self, key)} mm"
-                )
+            require_distance(key, getattr(self, key))
         if 2.0 * self.margin >= min(self.length, self.width):
             raise SettingError(
                 "The margins leave nothing of the sheet",

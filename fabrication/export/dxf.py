@@ -11,12 +11,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from ezdxf import bbox, units
 from ezdxf.document import Drawing
+from ezdxf.entities.circle import Circle
+from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.entities.text import Text
@@ -165,6 +168,10 @@ def _draw(space: Modelspace, placement: Placement, font: _StrokeFont) -> None:
         dxfattribs={"layer": CUT},
     )
     contour.set_xdata(_APPLICATION, [(1000, part.mark)])
+    for x, y, diameter in part.circles.tolist():
+        centre = (x + placement.x, y + placement.y)
+        hole = space.add_circle(centre, diameter / 2.0, dxfattribs={"layer": CUT})
+        hole.set_xdata(_APPLICATION, [(1000, part.mark)])
     for label in part.labels:
         for stroke in font.strokes(label):
             points = (stroke + offset).tolist()
@@ -204,11 +211,14 @@ class DxfPart:
     Parameters
     ----------
     mark : from the outline's extended data.
-    outline : (k, 2) mm, moved so that its first corner is (0, 0).
+    outline : (k, 2), or (k, 3) with bulges where it has arcs, mm, moved so that its first corner
+        is (0, 0).
+    circles : (m, 3) rows x, y, diameter of its round holes, in order of x, moved alike, mm.
     """
 
     mark: str
     outline: Floats
+    circles: Floats = field(default_factory=lambda: np.zeros((0, 3)))
 
 
 def read_dxf(path: Path | str) -> tuple[DxfPart, ...]:
@@ -226,17 +236,44 @@ def read_dxf(path: Path | str) -> tuple[DxfPart, ...]:
         raise FileError("The sheet cannot be read", where=str(path), value=str(error)) from None
     if document.units != units.MM:
         raise FileError("The sheet is not in mm", where=str(path), value=f"{document.units}")
-    return tuple(_read_part(path, e) for e in document.modelspace().query(f'*[layer=="{CUT}"]'))
+    contours: dict[str, Floats] = {}
+    holes: dict[str, list[tuple[float, float, float]]] = {}
+    for entity in document.modelspace().query(f'*[layer=="{CUT}"]'):
+        mark = _mark(path, entity)
+        if isinstance(entity, Circle):
+            x, y, _ = entity.dxf.center
+            holes.setdefault(mark, []).append((x, y, 2.0 * entity.dxf.radius))
+        else:
+            contours[mark] = _contour(path, entity)
+    if stray := sorted(holes.keys() - contours.keys()):
+        raise FileError("A hole lies in no part", where=f"{path}, {stray[0]}")
+    return tuple(_part(mark, contour, holes.get(mark, ())) for mark, contour in contours.items())
 
 
-def _read_part(path: Path | str, entity: object) -> DxfPart:
-    if not (isinstance(entity, LWPolyline) and entity.closed and entity.has_xdata(_APPLICATION)):
+def _part(mark: str, contour: Floats, holes: Sequence[tuple[float, float, float]]) -> DxfPart:
+    origin = np.r_[contour[0, :2], 0.0]
+    circles = np.array(sorted(holes)).reshape(-1, 3) - origin
+    outline = contour - origin
+    return DxfPart(mark, outline if outline[:, 2].any() else outline[:, :2], circles)
+
+
+def _mark(path: Path | str, entity: DXFEntity) -> str:
+    """The mark of the part that *entity* belongs to."""
+    closed = isinstance(entity, Circle) or (isinstance(entity, LWPolyline) and entity.closed)
+    if not (closed and entity.has_xdata(_APPLICATION)):
         raise FileError(
             "Something on the cutting layer is no closed outline with a mark",
             where=f"{path}, {entity}",
         )
-    points = np.array(entity.get_points("xy"), dtype=np.float64)
     marks = [str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000]
-    if len(points) < 3 or not marks:
+    if not marks:
         raise FileError("An outline is incomplete", where=f"{path}, {entity}")
-    return DxfPart(marks[0], points - points[0])
+    return marks[0]
+
+
+def _contour(path: Path | str, entity: Any) -> Floats:
+    """(k, 3) corners with bulges."""
+    points = np.array(entity.get_points("xyb"), dtype=np.float64)
+    if len(points) < 3:
+        raise FileError("An outline is incomplete", where=f"{path}, {entity}")
+    return points

@@ -24,11 +24,11 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_DocumentTool
 
-from fabrication.bodies import Bodies
 from fabrication.errors import OutputError
 from fabrication.export.step import PLACEHOLDER, quiet, sign
 from fabrication.outlines import Frame
 from fabrication.prisms import prism
+from fabrication.shapes import Bodies
 
 
 def write_bodies(

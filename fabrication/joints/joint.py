@@ -1,22 +1,22 @@
-"""What a joint answers: the cuts it makes in every lamella, and its findings."""
+"""What a joint answers: everything that it makes of a design."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 
-from fabrication.cut import Slot
-from fabrication.finding import Finding
+from fabrication.jointed import Jointed
 from fabrication.structures import Structure
 
 
 class Joint(ABC):
-    """A way to connect two lamellas at a node."""
+    """A way to connect lamellas at the nodes."""
 
     @abstractmethod
-    def cuts(self, structure: Structure) -> Mapping[str, tuple[Slot, ...]]:
-        """The slots of every lamella by its mark, in order along the strip."""
+    def build(self, design: Structure) -> Jointed:
+        """Strips, cuts, connectors, bill and findings on *design*.
 
-    @abstractmethod
-    def findings(self, structure: Structure) -> tuple[Finding, ...]:
-        """What a person should know about these joints."""
+        Raises
+        ------
+        SettingError
+            When the joint's sizes cannot be made on the design's profile at all.
+        """

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from fabrication.bodies import structure_bodies, with_bulges
+from fabrication.bodies import structure_bodies
+from fabrication.shapes import with_bulges
 
 
 def in_space(body, shapes, z):

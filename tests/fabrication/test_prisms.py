@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
 
-from fabrication.bodies import Shape, structure_bodies
+from fabrication.bodies import structure_bodies
 from fabrication.errors import KernelError
 from fabrication.outlines import outline_area
 from fabrication.prisms import prism
+from fabrication.shapes import Shape
 from fabrication.solid import volume
 
 pytestmark = pytest.mark.xdist_group("kernel")

@@ -248,7 +248,7 @@ def test_lamellas_that_end_at_a_singular_node_leave_each_other_room(saddle, prof
 
 def test_a_singular_node_is_a_finding_and_not_a_slot(saddle):
     node = singular(saddle)
-    (finding,) = fab.SlotJoint().findings(saddle.structure)
+    (finding,) = fab.SlotJoint().build(saddle.structure).findings
     assert (finding.code, finding.where, finding.severity) == (
         "singular-node",
         node.name,

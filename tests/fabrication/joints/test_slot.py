@@ -134,7 +134,7 @@ def test_a_negative_clearance_is_refused(key, value):
 @pytest.mark.parametrize("depth", [50.0, 60.0])
 def test_slots_that_cut_the_strips_through_are_refused(hypar, depth):
     with pytest.raises(gs.SettingError, match="cut the strips through") as info:
-        fab.SlotJoint(depth_clearance=depth).cuts(hypar.structure)
+        fab.SlotJoint(depth_clearance=depth).build(hypar.structure)
     assert (info.value.where, info.value.value) == ("depth_clearance", f"{depth:g} mm")
     assert "50 mm" in info.value.limit
 
@@ -146,8 +146,8 @@ def test_slots_that_leave_a_thread_are_cut(hypar):
 def drawn(design, joint):
     return {
         (mark, slot.node): slot
-        for mark, slots in joint.cuts(design.structure).items()
-        for slot in slots
+        for mark, cuts in joint.build(design.structure).cuts.items()
+        for slot in cuts.slots
     }
 
 
@@ -217,7 +217,7 @@ def test_slots_sit_at_the_stations_of_their_nodes(enneper):
 
 
 def test_a_good_net_gives_no_findings(enneper):
-    assert fab.SlotJoint().findings(enneper.structure) == ()
+    assert fab.SlotJoint().build(enneper.structure).findings == ()
 
 
 def test_a_sharp_angle_is_an_error_at_its_node(hypar):
@@ -225,7 +225,7 @@ def test_a_sharp_angle_is_an_error_at_its_node(hypar):
     angles = [radians(14.9), radians(15.1), np.pi - radians(14.9), np.pi - radians(15.1)]
     bent = [replace(node, angle=a) for node, a in zip(nodes, angles, strict=False)]
     structure = replace(hypar.structure, nodes=(*bent, *nodes[len(angles) :]))
-    found = fab.SlotJoint().findings(structure)
+    found = fab.SlotJoint().build(structure).findings
     assert [f.code for f in found] == ["sharp-angle"] * 2
     assert [f.where for f in found] == [nodes[0].name, nodes[2].name]
     assert [f.severity for f in found] == [fab.Severity.ERROR] * 2
@@ -242,5 +242,5 @@ def test_signs_of_twist_are_those_of_the_frames():
 
 
 def test_every_joint_is_reached_by_its_name():
-    assert {"slot": fab.SlotJoint} == fab.JOINTS
+    assert fab.JOINTS["slot"] is fab.SlotJoint
     assert all(issubclass(joint, fab.Joint) for joint in fab.JOINTS.values())
