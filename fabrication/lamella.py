@@ -204,3 +204,33 @@ class Lamella:
             np.einsum("nc,nc->n", second, f.b) / speed,
             np.einsum("nc,nc->n", second, f.n) / speed,
         )
+
+
+def piece_of(
+    lamella: Lamella, mark: str, nodes: tuple[int, int], start: float, end: float
+) -> Lamella:
+    """A length of *lamella* as a strip of its own; its stations begin at its own first node.
+
+    Parameters
+    ----------
+    nodes : number of the first and of the last node it keeps along the lamella; it may end short
+        of either.
+    start, end : its cut ends, stations of *lamella*, mm.
+    """
+    first, last = nodes
+    stations = lamella.stations[first : last + 1]
+    origin = float(stations[0])
+    return Lamella(
+        mark=mark,
+        family=lamella.family,
+        nodes=lamella.nodes[first : last + 1],
+        axis=AxisCurve(_moved(lamella.axis.spline, -origin), frozen(stations - origin), False),
+        normals=_moved(lamella.normals, -origin),
+        start=start - origin,
+        end=end - origin,
+    )
+
+
+def _moved(spline: CubicSpline, by: float) -> CubicSpline:
+    """*spline* with its parameter moved *by* mm."""
+    return CubicSpline.construct_fast(spline.c, spline.x + by, spline.extrapolate, spline.axis)
