@@ -1,41 +1,51 @@
-"""Do the strips go together? The volume two crossing strips share at their nodes.
+"""Do the parts go together? The volume that strips and connectors share where they meet.
 
-Strips that meet anywhere else are found by ``collisions``.
+Around everything that meets (slots, cut ends, connectors) every strip is taken as it is cut, bent
+and twisted into place, and intersected with its neighbours. The pieces are meshed independently of
+the CAD solids: a block of cells over the flat outline, with the slots' cells left out, is moved
+through the strip's own map. The map is straight along the height, so only the length needs slices.
 
-Around a node both strips are taken with their drawn slots, as thin solids bent and twisted into
-place, and intersected. The pieces are meshed independently of the CAD solids: a small block of
-cells over the flat outline, two rows high with the slot's cells left out, is moved through the
-strip's own map. The map is straight along the height, so only the length needs slices.
+Strips that meet away from their slots are found by ``collisions``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from itertools import pairwise
 
 import manifold3d
 import numpy as np
 
 from fabrication.collisions import slot_reach
-from fabrication.cut import Edge, Slot
+from fabrication.cut import Edge
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
+from fabrication.shapes import Prisms, Shape
 from fabrication.structures import Structure
-from gridshell.arrays import Floats, Indices
+from gridshell.arrays import Floats, Indices, Mask, Points
+
+_STEP = 3.0
+"""Length of a cell at most, mm."""
 
 _SLICES = 4
-"""Cells beside the slot on either side, and in the slot."""
+"""Cells beside a slot on either side, and in the slot."""
+
+_SAMPLE = 20.0
+"""Between the points that tell which strips are near a connector or a cut end, mm."""
+
+_ARC = 16
+"""Straight pieces of half a circle."""
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Clash volumes over all slotted nodes.
+    """Clash volumes over all nodes.
 
     Parameters
     ----------
-    max_mm3 : largest volume shared at one node, mm3.
-    worst : its node.
+    max_mm3 : largest volume shared by two parts, mm3.
+    worst : the node it is nearest to.
     nodes : how many were tried.
     """
 
@@ -44,88 +54,356 @@ class Fit:
     nodes: int
 
 
-def fit(structure: Structure, parts: Sequence[FlatPart]) -> Fit:
-    """Intersect the two strips at every slotted node."""
-    pieces: dict[str, list[manifold3d.Manifold]] = {}
-    for lamella, part in zip(structure.lamellas, parts, strict=True):
-        solids = slot_pieces(lamella, part)
-        for slot, piece in zip(part.slots, solids, strict=True):
-            pieces.setdefault(slot.node, []).append(piece)
-    clashes = {node: (pair[0] ^ pair[1]).volume() for node, pair in pieces.items()}
+def fit(strips: Structure, parts: Sequence[FlatPart], connectors: Sequence[Prisms] = ()) -> Fit:
+    """Intersect strips with each other and with connectors wherever they meet.
+
+    Parameters
+    ----------
+    strips, parts : one part per strip, in their order.
+    connectors : solids beside the strips; they are not tried against each other.
+    """
+    clashes = clash_volumes(strips, parts, connectors)
     worst = max(clashes, key=lambda node: clashes[node], default="")
     largest = clashes.get(worst, 0.0)
     return Fit(largest, worst if largest > 0.0 else "", len(clashes))
 
 
-def slot_pieces(lamella: Lamella, part: FlatPart) -> list[manifold3d.Manifold]:
-    """The built strip around each of its slots, one solid per slot."""
-    if not part.slots:
+def clash_volumes(
+    strips: Structure, parts: Sequence[FlatPart], connectors: Sequence[Prisms] = ()
+) -> dict[str, float]:
+    """Largest volume that two parts share at each node where parts meet, mm3, by node.
+
+    Nodes where more than two lamellas end are left to ``collisions``.
+    """
+    bodies = [solid for kind in connectors for solid in _solids(kind)]
+    pieces: list[_Solid] = []
+    for index, windows in enumerate(_windows(strips, parts, bodies)):
+        pieces += _pieces(index, strips.lamellas[index], parts[index], windows)
+    first, second, middle = _near(pieces, bodies)
+    name = _nearest_nodes(strips, middle)
+    clashes: dict[str, float] = {}
+    solids = [*pieces, *bodies]
+    for a, b, nearest in zip(first.tolist(), second.tolist(), name, strict=True):
+        slotted = solids[a].nodes & solids[b].nodes
+        node = nearest if not slotted or nearest in slotted else min(slotted)
+        if node:
+            shared = (solids[a].solid ^ solids[b].solid).volume()
+            clashes[node] = max(clashes.get(node, 0.0), shared)
+    return clashes
+
+
+@dataclass(frozen=True, eq=False)
+class _Solid:
+    """Something that may clash: a piece of a strip, or a connector.
+
+    Parameters
+    ----------
+    strip : index of the strip; -1 for a connector.
+    low, high : (3,) corners of its box, mm.
+    core, radius : (k, 3) points, and how far from them it reaches; of a connector.
+    nodes : whose slots a piece of a strip has.
+    """
+
+    solid: manifold3d.Manifold
+    strip: int
+    low: Floats
+    high: Floats
+    core: Points
+    radius: float
+    nodes: frozenset[str] = frozenset()
+
+
+def _boxed(
+    solid: manifold3d.Manifold,
+    strip: int,
+    core: Points,
+    radius: float = 0.0,
+    nodes: frozenset[str] = frozenset(),
+) -> _Solid:
+    box = np.array(solid.bounding_box())
+    return _Solid(solid, strip, box[:3], box[3:], core, radius, nodes)
+
+
+def _near(pieces: Sequence[_Solid], bodies: Sequence[_Solid]) -> tuple[Indices, Indices, Points]:
+    """Pairs of solids with overlapping boxes, and the middles of what the boxes share.
+
+    A connector is no partner of a connector, nor a strip of itself.
+    """
+    from scipy.spatial import cKDTree
+
+    every = [*pieces, *bodies]
+    if not pieces:
+        return np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros((0, 3))
+    low, high = (np.array([getattr(s, side) for s in every]) for side in ("low", "high"))
+    strip = np.array([s.strip for s in every])
+    reach = float(np.linalg.norm(high - low, axis=1).max())
+    pairs = cKDTree((low + high) / 2.0).query_pairs(reach, output_type="ndarray")
+    a, b = np.sort(pairs, axis=1).T
+    meet = ((low[a] < high[b]) & (low[b] < high[a])).all(axis=1) & (strip[a] != strip[b])
+    a, b = a[meet], b[meet]
+    order = np.lexsort((b, a))
+    a, b = a[order], b[order]
+    middle = (np.maximum(low[a], low[b]) + np.minimum(high[a], high[b])) / 2.0
+    return a, b, middle
+
+
+def _nearest_nodes(strips: Structure, points: Points) -> list[str]:
+    """Names of the nodes nearest to *points*; nothing where more than two lamellas end."""
+    from scipy.spatial import cKDTree
+
+    if not len(points):
         return []
-    flat = np.array([_lattice(slot, part) for slot in part.slots])
-    x, y, up = np.moveaxis(flat, -1, 0).reshape(3, -1)
-    placed = lamella.place(x + lamella.start, y, up - part.width / 2.0).reshape(flat.shape)
-    return [
-        manifold3d.Manifold(
+    tree = cKDTree([node.position for node in strips.nodes])
+    _, nearest = tree.query(points)
+    names = ["" if _singular(strips, i) else strips.nodes[i].name for i in range(len(strips.nodes))]
+    return [names[i] for i in nearest.tolist()]
+
+
+def _singular(strips: Structure, i: int) -> bool:
+    node = strips.nodes[i]
+    return node.angle is None and len(node.crossings) > 2
+
+
+# ---- connectors --------------------------------------------------------------------------------
+
+
+def _solids(kind: Prisms) -> Iterator[_Solid]:
+    """The bodies of a kind, each a copy of its shape moved into place."""
+    made = [_extruded(shape) for shape in kind.shapes]
+    for body in kind.bodies:
+        shape, frame = kind.shapes[body.shape], body.frame
+        motion = np.column_stack([frame.x, frame.y, frame.normal, frame.origin])
+        count = max(2, int(np.ceil((shape.high - shape.low) / _SAMPLE)) + 1)
+        z = np.linspace(shape.low, shape.high, count)
+        middle = shape.outline[:, :2].mean(axis=0)
+        radius = float(np.linalg.norm(shape.outline[:, :2] - middle, axis=1).max())
+        core = frame.place(np.tile(middle, (count, 1))) + z[:, None] * frame.normal
+        yield _boxed(made[body.shape].transform(motion), -1, core, radius)
+
+
+def _extruded(shape: Shape) -> manifold3d.Manifold:
+    contours = [_polygon(shape.outline), *(_polygon(o)[::-1] for o in shape.openings)]
+    section = manifold3d.CrossSection(contours, manifold3d.FillRule.Positive)
+    return section.extrude(shape.high - shape.low).translate([0.0, 0.0, shape.low])
+
+
+def _polygon(outline: Floats) -> Floats:
+    """(n, 2) corners of an outline with bulges; arcs as chords."""
+    points = []
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        if a[2] == 0.0:
+            points.append(a[None, :2])
+            continue
+        chord, bulge = b[:2] - a[:2], a[2]
+        count = max(2, int(np.ceil(_ARC * np.abs(np.arctan(bulge)) * 4.0 / np.pi)))
+        left = np.array([-chord[1], chord[0]])
+        centre = (a[:2] + b[:2]) / 2.0 + left * (1.0 - bulge**2) / (4.0 * bulge)
+        turn = np.arange(count) / count * 4.0 * np.arctan(bulge)
+        x, y = a[:2] - centre
+        c, s = np.cos(turn), np.sin(turn)
+        points.append(centre + np.stack([c * x - s * y, s * x + c * y], axis=1))
+    return np.concatenate(points)
+
+
+# ---- pieces of strips --------------------------------------------------------------------------
+
+_Window = tuple[float, float]
+"""From and to, mm from the strip's cut end."""
+
+
+def _windows(
+    strips: Structure, parts: Sequence[FlatPart], bodies: Sequence[_Solid]
+) -> list[list[_Window]]:
+    """Where every strip may meet something: around slots, near cut ends and near connectors."""
+    found: list[list[_Window]] = [[] for _ in parts]
+    for own, part in zip(found, parts, strict=True):
+        for slot in part.slots:
+            reach = slot.width / 2.0 + slot_reach(slot, part.thickness)
+            own.append((slot.x - reach, slot.x + reach))
+    for index, x, reach in _visits(strips, parts, bodies):
+        found[index].append((x - reach, x + reach))
+    return [_merged(own, part.length) for own, part in zip(found, parts, strict=True)]
+
+
+def _visits(
+    strips: Structure, parts: Sequence[FlatPart], bodies: Sequence[_Solid]
+) -> Iterator[tuple[int, float, float]]:
+    """Strip, place and reach wherever a strip passes a connector or another strip's cut end."""
+    from scipy.spatial import cKDTree
+
+    owner, x, points = _samples(strips, parts)
+    width = strips.profile.width
+    apart = float(np.hypot(_SAMPLE / 2.0, width / 4.0))
+    bodies_core = [
+        (core, body.radius + apart + _SAMPLE / 2.0) for body in bodies for core in body.core
+    ]
+    tree = cKDTree(points)
+    for core, radius in bodies_core:
+        for i in tree.query_ball_point(core, radius):
+            yield int(owner[i]), float(x[i]), _SAMPLE
+    ends = _ends(strips, parts)
+    hits = tree.query_ball_point(ends, apart + 2.0 * strips.profile.thickness + width / 8.0)
+    for row, near in enumerate(hits):
+        own = row // 6
+        beside = [i for i in near if owner[i] != own]
+        for i in beside:
+            yield int(owner[i]), float(x[i]), _SAMPLE
+        if beside:
+            yield own, (0.0, parts[own].length)[row % 6 // 3], 2.0 * _SAMPLE
+
+
+def _samples(strips: Structure, parts: Sequence[FlatPart]) -> tuple[Indices, Floats, Points]:
+    """Points of all strips along their edges and their middle, with strip and place."""
+    owner, along, points = [], [], []
+    for index, (lamella, part) in enumerate(zip(strips.lamellas, parts, strict=True)):
+        count = max(2, int(np.ceil(part.length / _SAMPLE)) + 1)
+        x = np.repeat(np.linspace(0.0, part.length, count), 3)
+        z = np.tile(part.width * np.array([-0.5, 0.0, 0.5]), count)
+        points.append(lamella.place(x + lamella.start, np.zeros_like(x), z))
+        along.append(x)
+        owner.append(np.full(len(x), index))
+    return np.concatenate(owner), np.concatenate(along), np.concatenate(points)
+
+
+def _ends(strips: Structure, parts: Sequence[FlatPart]) -> Points:
+    """(6 n, 3) lower edge, middle and upper edge of each strip's start, then of its end."""
+    points = []
+    for lamella, part in zip(strips.lamellas, parts, strict=True):
+        s = np.repeat([lamella.start, lamella.end], 3)
+        z = np.tile(part.width * np.array([-0.5, 0.0, 0.5]), 2)
+        points.append(lamella.place(s, np.zeros(6), z))
+    return np.concatenate(points)
+
+
+def _merged(windows: Sequence[_Window], length: float) -> list[_Window]:
+    """Windows clipped to the strip; those that overlap are one."""
+    merged: list[_Window] = []
+    for low, high in sorted((max(a, 0.0), min(b, length)) for a, b in windows):
+        if merged and low <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
+        elif low < high:
+            merged.append((low, high))
+    return merged
+
+
+def _pieces(
+    index: int, lamella: Lamella, part: FlatPart, windows: Sequence[_Window]
+) -> Iterator[_Solid]:
+    """The built strip within each window, bent, twisted, slotted and drilled."""
+    lattices = [_Lattice.of(part, window) for window in windows]
+    if not lattices:
+        return
+    flat = np.concatenate([lattice.points for lattice in lattices])
+    x, y, up = flat.T
+    placed = lamella.place(x + lamella.start, y, up - part.width / 2.0)
+    ends = np.cumsum([len(lattice.points) for lattice in lattices])[:-1]
+    for lattice, points in zip(lattices, np.split(placed, ends), strict=True):
+        solid = manifold3d.Manifold(
             manifold3d.Mesh64(
                 vert_properties=np.ascontiguousarray(points),
-                tri_verts=_triangles(slot.edge).astype(np.uint64),
+                tri_verts=lattice.triangles.astype(np.uint64),
             )
         )
-        for slot, points in zip(part.slots, placed, strict=True)
-    ]
+        for hole in part.holes:
+            if lattice.low < hole.x < lattice.high:
+                solid -= _drill(lamella, part, hole.x, hole.y, hole.diameter)
+        nodes = frozenset(s.node for s in part.slots if lattice.low < s.x < lattice.high)
+        yield _boxed(solid, index, points[:1], nodes=nodes)
 
 
-def _lattice(slot: Slot, part: FlatPart) -> Floats:
-    """Corners of the cells around a slot as (x, y through the thickness, height), (k, 3)."""
-    reach = slot_reach(slot, part.thickness)
-    half, steps = slot.width / 2.0, np.arange(_SLICES) / _SLICES
-    x = (
-        slot.x
-        + np.r_[
-            -half - reach * (1.0 - steps),
-            -half + slot.width * steps,
-            half + reach * steps,
-            half + reach,
-        ]
+def _drill(
+    lamella: Lamella, part: FlatPart, x: float, y: float, diameter: float
+) -> manifold3d.Manifold:
+    """A cylinder through the strip where its hole lies."""
+    s = np.array([x + lamella.start])
+    frame = lamella.frames(s)
+    middle = lamella.place(s, np.zeros(1), np.array([y - part.width / 2.0]))[0]
+    motion = np.column_stack([frame.n[0], frame.t[0], frame.b[0], middle])
+    tool = manifold3d.Manifold.cylinder(
+        3.0 * part.thickness, diameter / 2.0, circular_segments=4 * _ARC, center=True
     )
-    floor = part.width - slot.depth if slot.edge is Edge.UPPER else slot.depth
-    height = np.array([0.0, floor, part.width])
-    through = np.array([-part.thickness / 2.0, part.thickness / 2.0])
-    return np.stack(np.meshgrid(x, through, height, indexing="ij"), axis=-1).reshape(-1, 3)
+    return tool.transform(motion)
 
 
-@cache
-def _triangles(edge: Edge) -> Indices:
-    """Closed surface of the cells of a piece, turned outwards in (x, y, height)."""
-    columns = 3 * _SLICES
-    present = np.ones((columns + 2, 3, 4), dtype=bool)
-    present[0] = present[-1] = False
-    present[:, [0, -1]] = present[:, :, [0, -1]] = False
-    row = 2 if edge is Edge.UPPER else 1
-    present[1 + _SLICES : 1 + 2 * _SLICES, 1, row] = False
-    number = np.arange((columns + 1) * 2 * 3).reshape(columns + 1, 2, 3)
-    faces = []
-    for i, j, k in np.argwhere(present).tolist():
-        corner = np.array([i - 1, j - 1, k - 1])
-        for axis in range(3):
-            for side in (0, 1):
-                beside = np.array([i, j, k])
-                beside[axis] += 2 * side - 1
-                if not present[tuple(beside)]:
-                    faces.append(_face(number, corner, axis, side))
-    quads = np.array(faces)
-    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+@dataclass(frozen=True, eq=False)
+class _Lattice:
+    """Cells over a window of a flat strip.
+
+    Parameters
+    ----------
+    points : (n, 3) corners of the cells: x, y through the thickness, height from the lower edge.
+    triangles : (m, 3) the closed surface of the cells that are there, turned outwards.
+    low, high : the window, mm.
+    """
+
+    points: Floats
+    triangles: Indices
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, part: FlatPart, window: _Window) -> _Lattice:
+        """Columns end at slot walls and are 3 mm long at most; rows end at slot floors."""
+        low, high = window
+        slots = [s for s in part.slots if low < s.x < high]
+        walls = [w for s in slots for w in (s.x - s.width / 2.0, s.x + s.width / 2.0)]
+        stops = np.unique(np.clip(np.r_[low, walls, high], low, high))
+        x = np.concatenate(
+            [np.linspace(a, b, _cells(b - a, thin=True) + 1)[:-1] for a, b in pairwise(stops)]
+            + [[high]]
+        )
+        floors = [part.width - s.depth if s.edge is Edge.UPPER else s.depth for s in slots]
+        z = np.unique(np.r_[0.0, floors, part.width])
+        column, row = (x[:-1] + x[1:]) / 2.0, (z[:-1] + z[1:]) / 2.0
+        present = np.ones((len(column), len(row)), dtype=bool)
+        for slot, floor in zip(slots, floors, strict=True):
+            inside = np.abs(column - slot.x) < slot.width / 2.0
+            open_rows = row > floor if slot.edge is Edge.UPPER else row < floor
+            present &= ~(inside[:, None] & open_rows)
+        through = np.array([-part.thickness / 2.0, part.thickness / 2.0])
+        grid = np.stack(np.meshgrid(x, through, z, indexing="ij"), axis=-1)
+        _bevel(grid, part)
+        return cls(grid.reshape(-1, 3), _surface(present), low, high)
 
 
-def _face(number: Indices, corner: Indices, axis: int, side: int) -> list[int]:
-    """Corner numbers of one side of a cell, counter-clockwise seen from outside."""
-    b, c = (axis + 1) % 3, (axis + 2) % 3
-    ring = [(0, 0), (1, 0), (1, 1), (0, 1)] if side else [(0, 0), (0, 1), (1, 1), (1, 0)]
-    found = []
-    for at_b, at_c in ring:
-        point = corner.copy()
-        point[axis] += side
-        point[b] += at_b
-        point[c] += at_c
-        found.append(int(number[tuple(point)]))
-    return found
+def _cells(length: float, *, thin: bool) -> int:
+    least = _SLICES if thin and length < _SLICES * _STEP else 1
+    return max(least, int(np.ceil(length / _STEP)))
+
+
+def _bevel(grid: Floats, part: FlatPart) -> None:
+    """Move the columns near a bevelled end so that its near and far face end where they do."""
+    for run, end in zip(part.bevels, (0.0, part.length), strict=True):
+        if run == 0.0 or not np.isclose(grid[:, 0, 0, 0], end).any():
+            continue
+        for side, sign in ((1, 1.0), (0, -1.0)):
+            shorter = max(0.0, -sign * run)
+            x = grid[:, side, :, 0]
+            reach = 4.0 * abs(run)
+            near = np.clip(1.0 - np.abs(x - end) / reach, 0.0, 1.0)
+            x += np.where(end == 0.0, 1.0, -1.0) * shorter * near
+
+
+def _surface(present: Mask) -> Indices:
+    """Closed surface of the cells of a lattice one cell thick, turned outwards."""
+    columns, rows = present.shape
+    number = np.arange((columns + 1) * 2 * (rows + 1)).reshape(columns + 1, 2, rows + 1)
+    cell = np.pad(present[:, None, :], 1)
+    inside = cell[1:-1, 1:-1, 1:-1]
+    quads = []
+    for axis in range(3):
+        for side in (0, 1):
+            beside = np.roll(cell, 1 - 2 * side, axis=axis)[1:-1, 1:-1, 1:-1]
+            corner = np.argwhere(inside & ~beside)
+            corner[:, axis] += side
+            b, c = (axis + 1) % 3, (axis + 2) % 3
+            ring = [(0, 0), (1, 0), (1, 1), (0, 1)] if side else [(0, 0), (0, 1), (1, 1), (1, 0)]
+            found = []
+            for at_b, at_c in ring:
+                point = corner.copy()
+                point[:, b] += at_b
+                point[:, c] += at_c
+                found.append(number[tuple(point.T)])
+            quads.append(np.stack(found, axis=1))
+    faces = np.concatenate(quads)
+    return np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])

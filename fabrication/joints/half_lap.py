@@ -144,7 +144,24 @@ def slot_widths(strips: Structure, nodes: Sequence[Node], lap: HalfLap) -> Float
         )
         for own, sign in ((0, 1.0), (1, -1.0))
     ]
-    return np.stack(filled, axis=1) + lap.clearance
+    return np.stack(filled, axis=1) + _astray(strips, nodes, tangents) + lap.clearance
+
+
+def _astray(strips: Structure, nodes: Sequence[Node], tangents: Floats) -> Floats:
+    """(n, 2) what slots need because the two strips' own lines at a node are not quite one, mm.
+
+    Strips beside their axes share the axis of a crossing to the second order only.
+    """
+    heights = strips.profile.width * np.array([-0.5, 0.0, 0.5])
+    lines = np.zeros((len(nodes), 2, 3, 3))
+    for number, entries in _rows(nodes).items():
+        lamella = strips.lamellas[number]
+        here = np.array([row for row, _ in entries])
+        s = np.repeat([station for _, station in entries], 3)
+        z = np.tile(heights, len(entries))
+        lines[here, lamella.family - 1] = lamella.place(s, np.zeros_like(s), z).reshape(-1, 3, 3)
+    apart = np.einsum("nzc,nfc->nfz", lines[:, 0] - lines[:, 1], tangents)
+    return np.asarray(2.0 * np.abs(apart).max(axis=2, initial=0.0))
 
 
 def slot_width(
@@ -176,14 +193,19 @@ def slot_width(
 def _at_nodes(structure: Structure, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
     """(n, 2, 3) tangents and (n, 2) rates of twist of both families at regular *nodes*."""
     tangents, twists = np.zeros((len(nodes), 2, 3)), np.zeros((len(nodes), 2))
-    rows: dict[int, list[tuple[int, float]]] = {}
-    for row, node in enumerate(nodes):
-        for crossing in node.crossings:
-            rows.setdefault(crossing.lamella, []).append((row, crossing.station))
-    for number, entries in rows.items():
+    for number, entries in _rows(nodes).items():
         lamella = structure.lamellas[number]
         here = np.array([row for row, _ in entries])
         stations = np.array([station for _, station in entries])
         tangents[here, lamella.family - 1] = lamella.axis.tangents(stations)
         twists[here, lamella.family - 1] = lamella.twist(stations)
     return tangents, twists
+
+
+def _rows(nodes: Sequence[Node]) -> dict[int, list[tuple[int, float]]]:
+    """By strip the number of every node on it, with its station there."""
+    rows: dict[int, list[tuple[int, float]]] = {}
+    for row, node in enumerate(nodes):
+        for crossing in node.crossings:
+            rows.setdefault(crossing.lamella, []).append((row, crossing.station))
+    return rows
