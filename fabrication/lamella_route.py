@@ -16,10 +16,13 @@ from fabrication.export.step_reader import StepPart
 from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_findings, facade_system
 from fabrication.finding import Finding
 from fabrication.fitting import Fit, fit
-from fabrication.joints import SlotJoint
+from fabrication.joint_sections import JointSection
+from fabrication.joint_settings import joint_of
+from fabrication.jointed import Jointed
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.nesting import NestedSheet, nest
 from fabrication.parts import FlatPart, parts_of
+from fabrication.placing import keyed
 from fabrication.routes import (
     CLOSURE_LIMIT,
     VOLUME_LIMIT,
@@ -29,8 +32,9 @@ from fabrication.routes import (
     errors_at,
     loop_findings,
 )
-from fabrication.sections import ProfileSection, Project, SlotSection
+from fabrication.sections import ProfileSection, Project
 from fabrication.settings import profile_of, sheet_of
+from fabrication.stock import Profile
 from fabrication.structures import Structure, structure
 
 CLASH_LIMIT = 1e-3
@@ -43,7 +47,7 @@ class LamellaRoute:
 
     project: Project
     profile: ProfileSection
-    joint: SlotSection
+    joint: JointSection
 
     @property
     def planarity(self) -> gs.Planarity:
@@ -64,17 +68,26 @@ class LamellaRoute:
 
     def build(self, control: gs.ControlMesh, clock: Clock) -> LamellaSystem:
         """Lamellas along one of the two diagonal meshes."""
+        profile = profile_of(self.profile)
         with clock.stage("structure"):
             skin = gs.diagonal_meshes(control)[0 if self.project.net.skin == "D1" else 1]
-            built = structure(skin, profile_of(self.profile), overhang=self.profile.overhang)
+            jointed = self._jointed(skin, profile)
         with clock.stage("parts"):
-            joint = SlotJoint(self.joint.clearance, self.joint.depth_clearance)
-            jointed = joint.build(built)
             parts = parts_of(jointed)
             sheets = nest(parts, sheet_of(self.project.sheet))
-            facade = self._facade(skin, built)
-            findings = (*jointed.findings, *check(built, parts))
-        return LamellaSystem(self.project, joint, built, parts, sheets, facade, findings)
+            facade = self._facade(skin, jointed.design)
+            findings = (*jointed.findings, *check(jointed.strips, parts))
+        return LamellaSystem(self, jointed, parts, sheets, facade, findings)
+
+    def rebuilt(self, control: gs.ControlMesh) -> Jointed:
+        """The strips and their fixtures anew, on a net that was read back."""
+        skin = gs.diagonal_meshes(control)[0 if self.project.net.skin == "D1" else 1]
+        return self._jointed(skin, profile_of(self.profile))
+
+    def _jointed(self, skin: gs.DiagonalMesh, profile: Profile) -> Jointed:
+        design = structure(skin, profile, overhang=self.profile.overhang)
+        with keyed("joint"):
+            return joint_of(self.joint, profile).build(design)
 
     def _facade(self, net: gs.DiagonalMesh, built: Structure) -> FacadeSystem | None:
         project = self.project
@@ -88,13 +101,17 @@ class LamellaRoute:
 class LamellaSystem:
     """Lamellas, their flat parts, and the sheets these lie on."""
 
-    project: Project
-    joint: SlotJoint
-    structure: Structure
+    route: LamellaRoute
+    jointed: Jointed
     parts: tuple[FlatPart, ...]
     sheets: tuple[NestedSheet, ...]
     facade: FacadeSystem | None
     findings: Sequence[Finding]
+
+    @property
+    def project(self) -> Project:
+        """What all this is made for."""
+        return self.route.project
 
     def write(self, draft: Path, cad: Kernel, clock: Clock) -> Written:
         """Sheets, cut list and STEP; the clash at the nodes is measured meanwhile."""
@@ -102,14 +119,14 @@ class LamellaSystem:
         from fabrication.export.schedule import write_schedule
         from fabrication.loop import compare
 
-        name, material = self.project.name, self.structure.profile.material
+        name, material = self.project.name, self.jointed.design.profile.material
         facade = self.facade
-        work = LamellaWork(self.structure, self.parts, name)
+        work = LamellaWork(self.jointed.strips, self.parts, name)
         if facade is not None:
             work = replace(work, more=facade.bodies, beside=STEP_FILE)
         cad.order(work, draft / "structure.step")
         with clock.stage("fit"):
-            fitted = fit(self.structure, self.parts)
+            fitted = fit(self.jointed.strips, self.parts, self.jointed.connectors)
         with clock.stage("sheets"):
             files = write_dxf(self.sheets, draft / "sheets", name=name, material=material.name)
             drawn = [part for path in files for part in read_dxf(path)]
@@ -122,12 +139,12 @@ class LamellaSystem:
             skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
             net = skins[0 if self.project.net.skin == "D1" else 1]
             strips = [part for part in solid.parts if isinstance(part, StepPart)]
-            closed = asdict(compare(self.structure, self.parts, net, drawn, strips))
+            closed = asdict(compare(self.jointed.strips, self.parts, net, drawn, strips))
             findings = lamella_loop_findings(closed, fitted)
             more: Report = {}
             if facade is not None:
                 prisms = [part for part in solid.parts if isinstance(part, StepPrism)]
-                glazed = facade.closure(net, self.structure, panels, prisms)
+                glazed = facade.closure(net, self.jointed.design, panels, prisms)
                 more = {"facade": facade.figures(glazed)}
                 findings += facade_findings(glazed)
         return Written(
@@ -153,10 +170,10 @@ class LamellaSystem:
             path,
             name=self.project.name,
             report=report,
-            structure=self.structure,
+            structure=self.jointed.strips,
             parts=self.parts,
             sheets=self.sheets,
-            clearance=self.joint.clearance,
+            clearance=getattr(self.route.joint, "clearance", None),
             facade=None if self.facade is None else self.facade.built,
             pictures=pictures,
         )
@@ -164,10 +181,11 @@ class LamellaSystem:
     def _figures(self, fitted: Fit) -> Report:
         from fabrication.export.schedule import mass
 
-        material = self.structure.profile.material
+        material = self.jointed.design.profile.material
         return {
-            "lamellas": len(self.structure.lamellas),
-            "nodes": len(self.structure.nodes),
+            "lamellas": len(self.jointed.design.lamellas),
+            "strips": len(self.jointed.strips.lamellas),
+            "nodes": len(self.jointed.design.nodes),
             "joints": fitted.nodes,
             "total_length_m": round(sum(p.length for p in self.parts) / 1000.0, 3),
             "mass_kg": float(f"{sum(mass(p, material) for p in self.parts):.6g}"),

@@ -24,3 +24,21 @@ def placed(path: Path, section: str) -> Iterator[None]:
             limit=error.limit,
             advice=error.advice,
         ) from None
+
+
+@contextmanager
+def keyed(section: str) -> Iterator[None]:
+    """Add the section of the project to the key that an error of a setting names."""
+    try:
+        yield
+    except gs.SettingError as error:
+        at = error.where or ""
+        if not at.replace(".", "").isidentifier():
+            raise
+        raise gs.SettingError(
+            error.what,
+            where=f"{section}.{at}",
+            value=error.value,
+            limit=error.limit,
+            advice=error.advice,
+        ) from None

@@ -18,6 +18,7 @@ from typing import Any, get_args
 from pydantic import ValidationError
 
 from fabrication.errors import ProjectError
+from fabrication.joint_sections import JointSection, WasherSection
 from fabrication.panel_sections import (
     ConnectorSection,
     FacadeSection,
@@ -26,7 +27,7 @@ from fabrication.panel_sections import (
 )
 from fabrication.panel_settings import require_panels
 from fabrication.section_types import MaterialSection, Section
-from fabrication.sections import NetSection, ProfileSection, Project, SheetSection, SlotSection
+from fabrication.sections import NetSection, ProfileSection, Project, SheetSection
 from fabrication.settings import require_makeable
 from fabrication.source_sections import (
     GuideSection,
@@ -94,7 +95,8 @@ def _settings(section: Section) -> Iterator[str]:
 
 def _toml(value: Any) -> str:
     if isinstance(value, Section):
-        return "{ " + ", ".join(_settings(value)) + " }"
+        given = value.model_dump(exclude_none=True)
+        return "{ " + ", ".join(f"{key} = {_toml(getattr(value, key))}" for key in given) + " }"
     if isinstance(value, tuple | list):
         return "[" + ", ".join(map(_toml, value)) + "]"
     if isinstance(value, str | bool):
@@ -189,7 +191,7 @@ def _sections() -> dict[str, type[Section]]:
         "mesh": MeshSection,
         "net": NetSection,
         "profile": ProfileSection,
-        "joint": SlotSection,
+        "washer": WasherSection,
         "sheet": SheetSection,
         "own material": MaterialSection,
         "panels": PanelsSection,
@@ -197,7 +199,7 @@ def _sections() -> dict[str, type[Section]]:
         "facade": FacadeSection,
         "panel_sheet": SheetSection,
     }
-    for union in (SurfaceSection, PatchSection, ConnectorSection):
+    for union in (SurfaceSection, PatchSection, ConnectorSection, JointSection):
         section: type[Section]
         for section in get_args(get_args(union)[0]):
             tag = section.model_fields.get("kind") or section.model_fields["layout"]

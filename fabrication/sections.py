@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from fabrication.joint_sections import JointSection
 from fabrication.panel_sections import (
     BeamsSection,
     ConnectorSection,
@@ -65,14 +66,6 @@ class ProfileSection(Section):
     overhang: Annotated[Size | None, Field(description="half the width")] = None
 
 
-class SlotSection(Section):
-    """The slot joint (Fig. 15a): clearances in mm."""
-
-    kind: Literal["slot"]
-    clearance: Distance = 0.3
-    depth_clearance: Distance = 0.5
-
-
 class SheetSection(Section):
     """Raw sheets, mm."""
 
@@ -92,7 +85,7 @@ class Project(Section):
     mesh: MeshSection | None = None
     net: NetSection
     profile: ProfileSection | None = None
-    joint: SlotSection | None = None
+    joint: JointSection | None = None
     facade: FacadeSection | None = None
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None

@@ -13,10 +13,11 @@ import numpy as np
 import fabrication.stock as stock
 import gridshell as gs
 from fabrication.errors import ProjectError
+from fabrication.joint_sections import JointSection, SlottedJoint
 from fabrication.placing import placed
 from fabrication.remesh_settings import require_file, require_remeshable
 from fabrication.section_types import MOST_NODES, MaterialSection
-from fabrication.sections import ProfileSection, Project, SheetSection, SlotSection
+from fabrication.sections import ProfileSection, Project, SheetSection
 from fabrication.source_sections import (
     AnalyticSection,
     AsymptoticPatchSection,
@@ -104,12 +105,13 @@ def require_makeable(project: Project, path: Path) -> None:
 
 
 def _require_strips(
-    section: ProfileSection, joint: SlotSection, sheet: stock.Sheet, path: Path
+    section: ProfileSection, joint: JointSection, sheet: stock.Sheet, path: Path
 ) -> None:
     with placed(path, "profile"):
         profile = profile_of(section)
-    with placed(path, "joint"):
-        stock.require_web(profile, joint.depth_clearance)
+    if isinstance(joint, SlottedJoint):
+        with placed(path, "joint"):
+            stock.require_web(profile, joint.depth_clearance)
     room = sheet.width - 2.0 * sheet.margin
     if profile.width > room:
         raise ProjectError(
