@@ -69,6 +69,7 @@ from .sections import Project as Project
 from .shapes import Bodies as Bodies
 from .sheet_parts import panel_piece as panel_piece
 from .sheet_parts import plate_piece as plate_piece
+from .sheet_parts import shape_piece as shape_piece
 from .sheet_parts import star_piece as star_piece
 from .solid import solids as solids
 from .stock import (

@@ -16,6 +16,7 @@ from fabrication.connector_pieces import ConnectorPiece
 from fabrication.outlines import outline_area
 from fabrication.panel import Panel
 from fabrication.parts import Label
+from fabrication.shapes import Shape
 from fabrication.support import SupportPlate, plate_mark
 from gridshell.arrays import Floats, frozen
 
@@ -82,6 +83,46 @@ def star_piece(piece: ConnectorPiece) -> SheetPiece:
         labels.append(Label(text, float(x), float(y), small, _upright(out)))
     across = 2.0 * spec.radius
     return SheetPiece(piece.mark, frozen(outline), tuple(labels), across, across, piece.height)
+
+
+def shape_piece(mark: str, shape: Shape) -> SheetPiece:
+    """A connector that is cut from sheet, with its shape's mark below its opening or in its middle.
+
+    Parameters
+    ----------
+    mark : of the one piece; equal pieces are engraved alike, any of them goes to any place.
+    shape : its arcs are half circles at most; its openings are round.
+    """
+    outline = np.array(shape.outline)
+    low = _reach(outline).min(axis=0)
+    outline[:, :2] -= low
+    length, width = _reach(outline).max(axis=0).tolist()
+    circles = np.array([_circle(opening, low) for opening in shape.openings]).reshape(-1, 3)
+    hole = float(circles[:, 2].max(initial=0.0))
+    height = min(_LARGEST, 0.12 * width, 0.25 * length / (_LETTER * len(shape.mark)))
+    y = width / 2.0 - (hole / 2.0 + height if hole else 0.0)
+    return SheetPiece(
+        mark=mark,
+        outline=frozen(outline if outline[:, 2].any() else outline[:, :2]),
+        labels=(Label(shape.mark, length / 2.0, y, height),),
+        length=length,
+        width=width,
+        thickness=shape.high - shape.low,
+        circles=circles,
+    )
+
+
+def _reach(outline: Floats) -> Floats:
+    """(n, 2) corners of an outline (k, 3), and the middles of its arcs."""
+    a, b = outline[:, :2], np.roll(outline[:, :2], -1, axis=0)
+    right = np.stack([b[:, 1] - a[:, 1], a[:, 0] - b[:, 0]], axis=1)
+    return np.concatenate([a, (a + b) / 2.0 + outline[:, 2:] / 2.0 * right])
+
+
+def _circle(opening: Floats, low: Floats) -> list[float]:
+    """Row x, y, diameter of a round opening, two half circles, seen from *low*."""
+    x, y = opening[:, :2].mean(axis=0) - low
+    return [float(x), float(y), float(np.linalg.norm(opening[1, :2] - opening[0, :2]))]
 
 
 def _piece(

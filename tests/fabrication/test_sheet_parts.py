@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from shapely.geometry import Point, Polygon
 
-from fabrication.sheet_parts import _turned, panel_piece, plate_piece
+from fabrication.shapes import Shape, circle
+from fabrication.sheet_parts import _turned, panel_piece, plate_piece, shape_piece
 
 
 def sides(outline):
@@ -67,3 +68,24 @@ def test_text_is_never_upside_down(leaning):
 def test_a_rectangle_that_stands_is_laid_down():
     flat = _turned(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 5.0], [0.0, 5.0]]))
     assert flat.max(axis=0) == pytest.approx([5.0, 1.0])
+
+
+# ---- connectors that are cut from sheet ---------------------------------------------------------
+
+
+def test_a_washer_lies_in_its_box_with_its_hole_where_it_was():
+    outline = np.array([[30, -9, 0], [30, 9, 0], [-20, 9, 0], [-20, -9, 0]], dtype=float)
+    shape = Shape("W1", outline, 0.0, 4.0, (circle(4.5, 5.0, 0.0),))
+    piece = shape_piece("N7-top", shape)
+    assert (piece.length, piece.width, piece.thickness) == (50.0, 18.0, 4.0)
+    assert piece.circles.tolist() == [[25.0, 9.0, 9.0]]
+    assert piece.area * 4.0 == pytest.approx(shape.volume)
+    assert piece.outline.shape == (4, 2)
+
+
+def test_a_round_plate_has_the_box_of_its_circle():
+    piece = shape_piece("R1", Shape("R1", circle(20.0, 3.0, -4.0), 0.0, 2.0))
+    assert (piece.length, piece.width) == pytest.approx((40.0, 40.0))
+    assert piece.area == pytest.approx(np.pi * 400.0)
+    (label,) = piece.labels
+    assert (label.text, label.x, label.y) == ("R1", pytest.approx(20.0), pytest.approx(20.0))
