@@ -45,6 +45,14 @@ from .joints import StarWasher as StarWasher
 from .lamella import Lamella as Lamella
 from .loop import Closure as Closure
 from .loop import closure as closure
+from .materials import BIRCH_PLY as BIRCH_PLY
+from .materials import GLASS as GLASS
+from .materials import GRP as GRP
+from .materials import POPLAR_PLY as POPLAR_PLY
+from .materials import S235 as S235
+from .materials import S355 as S355
+from .materials import STAINLESS as STAINLESS
+from .materials import Material as Material
 from .nesting import NestedSheet as NestedSheet
 from .nesting import nest as nest
 from .node import Node as Node
@@ -71,19 +79,6 @@ from .sheet_parts import panel_piece as panel_piece
 from .sheet_parts import plate_piece as plate_piece
 from .sheet_parts import star_piece as star_piece
 from .solid import solids as solids
-from .stock import (
-    BIRCH_PLY as BIRCH_PLY,
-)
-from .stock import GLASS as GLASS
-from .stock import (
-    S235 as S235,
-)
-from .stock import (
-    STAINLESS as STAINLESS,
-)
-from .stock import (
-    Material as Material,
-)
 from .stock import (
     Profile as Profile,
 )
