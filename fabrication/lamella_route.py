@@ -16,6 +16,7 @@ from fabrication.export.step_reader import StepPart
 from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_findings, facade_system
 from fabrication.finding import Finding
 from fabrication.fitting import Fit, fit
+from fabrication.jointed import Jointed
 from fabrication.joints import SlotJoint
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.nesting import NestedSheet, nest
@@ -74,7 +75,7 @@ class LamellaRoute:
             sheets = nest(parts, sheet_of(self.project.sheet))
             facade = self._facade(skin, built)
             findings = (*jointed.findings, *check(built, parts))
-        return LamellaSystem(self.project, joint, built, parts, sheets, facade, findings)
+        return LamellaSystem(self.project, joint, jointed, built, parts, sheets, facade, findings)
 
     def _facade(self, net: gs.DiagonalMesh, built: Structure) -> FacadeSystem | None:
         project = self.project
@@ -90,6 +91,7 @@ class LamellaSystem:
 
     project: Project
     joint: SlotJoint
+    jointed: Jointed
     structure: Structure
     parts: tuple[FlatPart, ...]
     sheets: tuple[NestedSheet, ...]
@@ -153,7 +155,7 @@ class LamellaSystem:
             path,
             name=self.project.name,
             report=report,
-            structure=self.structure,
+            jointed=self.jointed,
             parts=self.parts,
             sheets=self.sheets,
             clearance=self.joint.clearance,
