@@ -82,6 +82,7 @@ def write_report(
         net_section=net_words(stress),
         stress_rows=stress_rows(strips, stress),
         bill=jointed.bill,
+        connectors=[prisms for prisms in jointed.connectors if prisms.bodies],
         masses=[mass(part, strips.profile.material) for part in parts],
         sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),

@@ -16,7 +16,7 @@ from gridshell.arrays import Floats
 _STRIP, _THINNEST_SLOT, _PITCH = (1040.0, 62.0), 3.0, 13.0
 """Px: the strip, its narrowest slot, and the room a station's figure needs."""
 
-_SMALLEST_HOLE, _SHORTEST_BEVEL = 1.6, 5.0
+_THINNEST_RELIEF, _SMALLEST_HOLE, _SHORTEST_BEVEL = 6.0, 1.6, 5.0
 
 
 def strip_drawing(part: FlatPart) -> dict[str, Any]:
@@ -52,8 +52,9 @@ def strip_drawing(part: FlatPart) -> dict[str, Any]:
 
 def _drawn(slot: Slot, along: float, across: float) -> Slot:
     """*slot* in px, with a relief in proportion to its width there."""
-    width = max(slot.width * along, _THINNEST_SLOT)
-    relief = Relief(slot.floor, width / 5.0 if slot.floor is Floor.DOGBONE else 0.0)
+    thinnest = _THINNEST_SLOT if slot.floor is Floor.SQUARE else _THINNEST_RELIEF
+    width = max(slot.width * along, thinnest)
+    relief = Relief(slot.floor, width / 3.2 if slot.floor is Floor.DOGBONE else 0.0)
     return replace(slot, x=slot.x * along, width=width, depth=slot.depth * across, relief=relief)
 
 
