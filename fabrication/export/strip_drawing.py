@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -16,25 +17,23 @@ from gridshell.arrays import Floats
 _STRIP, _THINNEST_SLOT, _PITCH = (1040.0, 62.0), 3.0, 13.0
 """Px: the strip, its narrowest slot, and the room a station's figure needs."""
 
+_LETTER, _LINE = 7.0, 10.5
 _THINNEST_RELIEF, _SMALLEST_HOLE, _SHORTEST_BEVEL = 6.0, 1.6, 5.0
 
 
 def strip_drawing(part: FlatPart) -> dict[str, Any]:
     """A flat strip to look at, px: lengths to scale, its width, slots, holes and bevels not.
 
-    A station is its place along the strip, the place of its figure, the figure, and the mark of
-    the partner with its height; the two ends have no partner. A strip without slots shows the
-    stations of its holes.
+    A station is its place along the strip, the place of its figure, and the figure. Labels are the
+    marks of the partners and where they stand. A strip without slots shows the stations of its
+    holes.
     """
     length, height = _STRIP
     along, across = length / part.length, height / part.width
-    drawn = [_drawn(slot, along, across) for slot in part.slots]
-    marked = part.slots or part.holes
-    x = np.array([0.0, *(cut.x for cut in marked), part.length])
+    room = _room(part.slots, along)
+    drawn = [_drawn(s, along, across, free) for s, free in zip(part.slots, room, strict=True)]
+    x = np.array([0.0, *(cut.x for cut in part.slots or part.holes), part.length])
     figures = [fixed(station, 1) for station in x.tolist()]
-    partners = ["", *(getattr(cut, "partner", "") for cut in marked), ""]
-    behind = [0.2 if getattr(c, "edge", None) is Edge.LOWER else 0.8 for c in marked]
-    heights = [height * share for share in (0.0, *behind, 0.0)]
     places = (x * along).round(1).tolist(), _apart(x * along).round(1).tolist()
     return {
         "part": part,
@@ -46,14 +45,44 @@ def strip_drawing(part: FlatPart) -> dict[str, Any]:
             for h in part.holes
         ],
         "bevels": _bevels(part, along),
-        "stations": list(zip(*places, figures, partners, heights, strict=True)),
+        "stations": list(zip(*places, figures, strict=True)),
+        "labels": _labels(part.slots, along),
     }
 
 
-def _drawn(slot: Slot, along: float, across: float) -> Slot:
-    """*slot* in px, with a relief in proportion to its width there."""
+def _room(slots: Sequence[Slot], along: float) -> list[float]:
+    """Px from each slot to its nearest neighbour."""
+    x = np.r_[-np.inf, [slot.x * along for slot in slots], np.inf]
+    return [float(free) for free in np.minimum(x[1:-1] - x[:-2], x[2:] - x[1:-1])]
+
+
+def _labels(slots: Sequence[Slot], along: float) -> list[tuple[float, float, str]]:
+    """Place, level and text of the partners' marks, behind the slots; close ones share a column."""
+    length, height = _STRIP
+    labels: list[tuple[float, int, Slot]] = []
+    ends: list[float] = []
+    for slot in slots:
+        half = _LETTER * len(slot.partner) / 2.0 + 2.0
+        x = min(max(slot.x * along, half), length - half)
+        free = (row for row, end in enumerate(ends) if x - half > end)
+        row = next(free, len(ends))
+        ends[row : row + 1] = [x + half]
+        labels.append((x, row, slot))
+    first = (len(ends) - 1) / 2.0
+    return [
+        (
+            x,
+            height * (0.2 if slot.edge is Edge.LOWER else 0.8) + _LINE * (row - first),
+            slot.partner,
+        )
+        for x, row, slot in labels
+    ]
+
+
+def _drawn(slot: Slot, along: float, across: float, free: float) -> Slot:
+    """*slot* in px, at most half as wide as what is *free*, its relief in proportion."""
     thinnest = _THINNEST_SLOT if slot.floor is Floor.SQUARE else _THINNEST_RELIEF
-    width = max(slot.width * along, thinnest)
+    width = max(slot.width * along, min(thinnest, free / 2.0))
     relief = Relief(slot.floor, width / 3.2 if slot.floor is Floor.DOGBONE else 0.0)
     return replace(slot, x=slot.x * along, width=width, depth=slot.depth * across, relief=relief)
 

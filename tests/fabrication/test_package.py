@@ -232,7 +232,7 @@ def test_a_bad_design_is_still_built_and_its_findings_are_in_the_report(tmp_path
     profile = {"width": 100.0, "thickness": 2.5, "material": weak}
     report = fab.run(project(profile=profile), tmp_path)
     found = report["findings"]
-    assert {(f["code"], f["severity"]) for f in found} == {("twist", "error")}
+    assert {(f["code"], f["severity"]) for f in found} == {("twist", "error"), ("stress", "error")}
     assert [f["where"] for f in found] == ["A1", "A2", "A3", "B1", "B2", "B3"]
     assert set(found[0]) >= {"code", "severity", "where", "value", "limit", "message"}
     assert set(content(tmp_path)) == FILES
