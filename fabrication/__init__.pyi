@@ -14,9 +14,11 @@ from .connector import connector_groups as connector_groups
 from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
 from .cut import Relief as Relief
+from .export.bay_schedule import write_bay_schedule as write_bay_schedule
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.report import write_report as write_report
+from .export.schedule import write_bill as write_bill
 from .export.schedule import write_schedule as write_schedule
 from .export.step import assembly as assembly
 from .export.step import write_step as write_step
@@ -85,6 +87,9 @@ from .stock import (
 from .stock import (
     Sheet as Sheet,
 )
+from .strength import BayStress as BayStress
+from .strength import bay_stress as bay_stress
+from .stress_checks import stress_section as stress_section
 from .structures import Structure as Structure
 from .structures import structure as structure
 from .support import PlateSection as PlateSection

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 import fabrication as fab
 import gridshell as gs
+from fabrication.arrangement import Lane, arranged
 from fabrication.joints.double_slot import DoubleSlotJoint, StarWasher
 from fabrication.lamella import piece_of
 from fabrication.net_sections import net_sections
@@ -79,6 +80,17 @@ def test_the_moment_of_the_helix_stress_is_that_of_its_energy():
     assert quad(pull, -h / 2, h / 2)[0] == pytest.approx(e * t * h**5 / 360.0 * rate**3)
     edge = at(0.0, 0.0, rate)["helix_edge"]
     assert edge == pytest.approx(e * rate**2 / 2.0 * (h**2 / 4.0 - h**2 / 12.0))
+
+
+@pytest.mark.parametrize(("width", "thickness", "over"), [(100.0, 2.5, 1e-9), (30.0, 10.0, 0.02)])
+def test_shear_by_twist_is_the_exact_one_of_a_rectangle(width, thickness, over):
+    """Saint-Venant's series for the middle of the long side; a strip of a third errs safely."""
+    rate, g, n = 3e-4, fab.STAINLESS.rigidity, np.arange(1, 60, 2)
+    decay = 1.0 / np.cosh(np.minimum(n * np.pi * width / (2.0 * thickness), 700.0))
+    exact = g * rate * thickness * (1.0 - 8.0 / np.pi**2 * (decay / n**2).sum())
+    found = at(0.0, 0.0, rate, width=width, thickness=thickness)["shear"]
+    assert exact <= found * (1.0 + 1e-12)
+    assert found == pytest.approx(exact, rel=over)
 
 
 RATES = st.floats(0.0, 1e-3)
@@ -206,6 +218,20 @@ def test_both_strips_of_a_double_lamella_are_checked(enneper):
     assert {mark[-1] for mark in stress.marks} == {"L", "R"}
     assert max(net_sections(parts[0])[0]) < parts[0].length
     assert (stress.net_area < 0.5).all()
+
+
+@pytest.mark.parametrize("level", [60.0, -35.0])
+def test_strips_on_two_levels_bend_about_their_strong_axis(hypar, level):
+    """A strip at d beside a straight twisted axis is a helix of curvature w^2 d / (1 + w^2 d^2)."""
+    lanes = {1: (Lane("", 0.0, level),), 2: (Lane("", 0.0, -level),)}
+    strips = arranged(hypar.structure, lanes, crossing=False).strips
+    stress = bay_stress(strips, hypar.parts)
+    profile = hypar.structure.profile
+    for index, lamella in enumerate(hypar.structure.lamellas):
+        rate = np.abs(lamella.twist(np.linspace(0.0, lamella.stations[-1], 200))).max()
+        curvature = rate**2 * abs(level) / (1.0 + rate**2 * level**2)
+        wanted = profile.material.modulus * curvature * profile.width / 2.0
+        assert stress.edgewise[stress.of_strip(index)].max() == pytest.approx(wanted, rel=0.02)
 
 
 def test_figures_do_not_depend_on_where_the_shell_stands(pair):
