@@ -14,9 +14,11 @@ from .connector import connector_groups as connector_groups
 from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
 from .cut import Relief as Relief
+from .export.bay_schedule import write_bay_schedule as write_bay_schedule
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.report import write_report as write_report
+from .export.schedule import write_bill as write_bill
 from .export.schedule import write_schedule as write_schedule
 from .export.step import assembly as assembly
 from .export.step import write_step as write_step
@@ -45,6 +47,14 @@ from .joints import StarWasher as StarWasher
 from .lamella import Lamella as Lamella
 from .loop import Closure as Closure
 from .loop import closure as closure
+from .materials import BIRCH_PLY as BIRCH_PLY
+from .materials import GLASS as GLASS
+from .materials import GRP as GRP
+from .materials import POPLAR_PLY as POPLAR_PLY
+from .materials import S235 as S235
+from .materials import S355 as S355
+from .materials import STAINLESS as STAINLESS
+from .materials import Material as Material
 from .nesting import NestedSheet as NestedSheet
 from .nesting import nest as nest
 from .node import Node as Node
@@ -73,24 +83,14 @@ from .sheet_parts import shape_piece as shape_piece
 from .sheet_parts import star_piece as star_piece
 from .solid import solids as solids
 from .stock import (
-    BIRCH_PLY as BIRCH_PLY,
-)
-from .stock import GLASS as GLASS
-from .stock import (
-    S235 as S235,
-)
-from .stock import (
-    STAINLESS as STAINLESS,
-)
-from .stock import (
-    Material as Material,
-)
-from .stock import (
     Profile as Profile,
 )
 from .stock import (
     Sheet as Sheet,
 )
+from .strength import BayStress as BayStress
+from .strength import bay_stress as bay_stress
+from .stress_checks import stress_section as stress_section
 from .structures import Structure as Structure
 from .structures import structure as structure
 from .support import PlateSection as PlateSection

@@ -170,7 +170,7 @@ class LamellaSystem:
             path,
             name=self.project.name,
             report=report,
-            structure=self.jointed.strips,
+            jointed=self.jointed,
             parts=self.parts,
             sheets=self.sheets,
             clearance=getattr(self.route.joint, "clearance", None),

@@ -44,12 +44,12 @@ def known_or_own(value: Any) -> str:
 
 
 OwnMaterial = Annotated[MaterialSection, Tag("own material")]
+SheetName = Literal["S235", "S355", "stainless", "birch-ply", "poplar-ply", "GRP"]
 SheetMetal = Annotated[
-    Annotated[Literal["S235", "stainless", "birch-ply"], Tag("known material")] | OwnMaterial,
+    Annotated[SheetName, Tag("known material")] | OwnMaterial,
     Discriminator(known_or_own),
 ]
 Sheeting = Annotated[
-    Annotated[Literal["glass", "S235", "stainless", "birch-ply"], Tag("known material")]
-    | OwnMaterial,
+    Annotated[Literal["glass"] | SheetName, Tag("known material")] | OwnMaterial,
     Discriminator(known_or_own),
 ]

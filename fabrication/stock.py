@@ -1,78 +1,21 @@
-"""What a strip is cut from: material, profile, sheet. Lengths mm, stresses N/mm2, density kg/m3."""
+"""What a strip is cut from: profile and sheet, of a material. Lengths mm."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
+from fabrication.materials import BIRCH_PLY as BIRCH_PLY
+from fabrication.materials import GLASS as GLASS
+from fabrication.materials import GRP as GRP
+from fabrication.materials import MATERIALS as MATERIALS
+from fabrication.materials import POPLAR_PLY as POPLAR_PLY
+from fabrication.materials import S235 as S235
+from fabrication.materials import S355 as S355
+from fabrication.materials import STAINLESS as STAINLESS
+from fabrication.materials import Material as Material
+from fabrication.sizes import require_distance as require_distance
+from fabrication.sizes import require_positive as require_positive
 from gridshell import SettingError
-
-
-def require_positive(key: str, value: float) -> None:
-    """Raise SettingError unless *value* is a positive, finite number."""
-    if not (np.isfinite(value) and value > 0.0):
-        raise SettingError(
-            "A size must be positive",
-            where=key,
-            value=f"{value:g}",
-            limit="> 0",
-            advice="check the sign and the unit",
-        )
-
-
-def require_distance(key: str, value: float) -> None:
-    """Raise SettingError unless *value* is nought or more, and finite."""
-    if not (np.isfinite(value) and value >= 0.0):
-        raise SettingError(
-            "A distance cannot be negative",
-            where=key,
-            value=f"{value:g} mm",
-            limit=">= 0",
-            advice="check the sign",
-        )
-
-
-@dataclass(frozen=True)
-class Material:
-    """An elastic material.
-
-    Parameters
-    ----------
-    name : as it appears in lists.
-    modulus : Young's modulus, N/mm2.
-    strength : the stress a strip may see while it is bent into place, N/mm2.
-    density : kg/m3.
-
-    Raises
-    ------
-    SettingError
-        For a number that is not positive.
-    """
-
-    name: str
-    modulus: float
-    strength: float
-    density: float
-
-    def __post_init__(self) -> None:
-        for key in ("modulus", "strength", "density"):
-            require_positive(key, getattr(self, key))
-
-
-S235 = Material("S235", modulus=210_000.0, strength=235.0, density=7850.0)
-"""Structural steel, EN 10025-2: yield strength 235 N/mm2 up to 16 mm."""
-
-STAINLESS = Material("stainless", modulus=200_000.0, strength=220.0, density=7900.0)
-"""Austenitic stainless steel sheet, 0.2 % proof strength 220 N/mm2 (EN 10088-2, 1.4301)."""
-
-BIRCH_PLY = Material("birch-ply", modulus=10_000.0, strength=40.0, density=680.0)
-"""Birch plywood along the grain, rounded down from manufacturers' bending values."""
-
-GLASS = Material("glass", modulus=70_000.0, strength=45.0, density=2500.0)
-"""Float glass, EN 572-1: characteristic bending strength 45 N/mm2, before any safety factor."""
-
-MATERIALS = {material.name: material for material in (S235, STAINLESS, BIRCH_PLY, GLASS)}
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,8 @@ class Development:
     length : developed length, mm.
     node_x : (k,) position of each node from the strip's cut end, mm.
     edgewise : largest distance of the unrolled axis from a straight line between its end nodes,
-        mm: what the strip is pushed sideways to lie in its place. Zero on an asymptotic curve.
+        or its ends where it stops short of them, mm: what the strip is pushed sideways to lie in
+        its place. Zero on an asymptotic curve.
     edge_strain : largest stretch of the strip's edges.
     """
 
@@ -39,12 +40,12 @@ class Development:
 def unroll(lamella: Lamella, width: float) -> Development:
     """Unroll *lamella*, a strip of *width* mm."""
     nodes = len(lamella.stations)
-    s = np.linspace(0.0, lamella.stations[-1], _SAMPLES_PER_BAY * nodes + 1)
+    s = np.linspace(*_held(lamella), _SAMPLES_PER_BAY * nodes + 1)
     _, strong = lamella.bending(s)
-    step = s[1] - s[0]
-    slope = np.r_[0.0, np.cumsum((strong[1:] + strong[:-1]) / 2.0 * step)]
-    sag = np.r_[0.0, np.cumsum((slope[1:] + slope[:-1]) / 2.0 * step)]
-    straight = sag[-1] * s / s[-1] if s[-1] > 0.0 else sag
+    along = s - s[0]
+    slope = np.r_[0.0, np.cumsum((strong[1:] + strong[:-1]) / 2.0 * along[1])]
+    sag = np.r_[0.0, np.cumsum((slope[1:] + slope[:-1]) / 2.0 * along[1])]
+    straight = sag[-1] * along / along[-1] if along[-1] > 0.0 else sag
     twist = lamella.twist(s)
     return Development(
         length=lamella.length,
@@ -52,3 +53,10 @@ def unroll(lamella: Lamella, width: float) -> Development:
         edgewise=float(np.abs(sag - straight).max()),
         edge_strain=float((twist**2).max() * (width / 2.0) ** 2 / 2.0),
     )
+
+
+def _held(lamella: Lamella) -> tuple[float, float]:
+    """Stations between which the strip must lie in its place: it need not reach its end nodes."""
+    if lamella.closed:
+        return lamella.start, lamella.end
+    return max(0.0, lamella.start), min(float(lamella.stations[-1]), lamella.end)

@@ -1,15 +1,16 @@
 """The report: one HTML page that opens from disk and asks no network for anything.
 
-The page shows what ``report.json`` and the parts hold: the shell to turn and to hover over, the
-key figures, the findings, the cut list and the longest strip. Words and definitions live in
+The page shows what ``report.json`` and the parts hold: the shell to turn, to hover over and to
+colour, the key figures, the findings, the stress by strip, the bill, the cut list and the longest
+strip. Words and definitions live in
 ``report.html``, geometry and the writing of numbers here. plotly.js is inlined, and the page's own
 policy forbids every request.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,20 +20,20 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.cut import Edge, outline
 from fabrication.errors import OutputError
+from fabrication.export.connector_view import connector_traces
 from fabrication.export.schedule import mass
 from fabrication.export.shell import shell_figure
+from fabrication.export.stress_view import colour_scale, net_words, shades, stress_rows
+from fabrication.export.strip_drawing import strip_drawing
 from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
+from fabrication.jointed import Jointed
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
-from fabrication.structures import Structure
-from gridshell.arrays import Floats
-
-_STRIP, _THINNEST_SLOT, _PITCH = (1040.0, 62.0), 3.0, 13.0
-"""Of the drawing, px: the strip, its narrowest slot, and the room a station's figure needs."""
+from fabrication.strength import BayStress, bay_stress
+from fabrication.stress_checks import stress_section
 
 
 def write_report(
@@ -40,8 +41,9 @@ def write_report(
     *,
     name: str,
     report: Mapping[str, Any],
-    structure: Structure,
+    jointed: Jointed,
     parts: Sequence[FlatPart],
+    stress: BayStress | None = None,
     sheets: Sequence[NestedSheet] = (),
     clearance: float | None = None,
     facade: PanelStructure | None = None,
@@ -54,7 +56,8 @@ def write_report(
     path : the HTML file, in a folder that exists.
     name : the project's name, as the title.
     report : what ``report.json`` holds; a figure that is missing or None reads "not measured".
-    structure, parts : one part per lamella, in the structure's order.
+    jointed, parts : what is built; one part per strip, in the strips' order.
+    stress : of all bays, where it is known already.
     sheets : where the parts lie; without them the cut list names no sheet.
     clearance : of the slots, mm; None leaves it out.
     facade : panels above the strips, where there are any.
@@ -65,22 +68,32 @@ def write_report(
     OutputError
         When the file cannot be written.
     """
+    stress = bay_stress(jointed.strips, parts) if stress is None else stress
+    design, strips = jointed.design, jointed.strips
     page = shared(
         "report.html",
         name=name,
         report=report,
         pictures=pictures,
-        figure=_figure(structure, parts, facade),
-        masses=[mass(part, structure.profile.material) for part in parts],
+        figure=_figure(jointed, parts, stress, facade),
+        shades=_json({"scale": colour_scale(), "shades": shades(stress)}),
+        scale=colour_scale(),
+        stress=stress_section(stress),
+        net_section=net_words(stress),
+        stress_rows=stress_rows(strips, stress),
+        bill=jointed.bill,
+        connectors=[prisms for prisms in jointed.connectors if prisms.bodies],
+        masses=[mass(part, strips.profile.material) for part in parts],
         sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
         clearance=clearance,
-        structure=structure,
+        design=design,
+        strips=strips,
         parts=parts,
-        families=[sum(lamella.family == f for lamella in structure.lamellas) for f in (1, 2)],
-        size=np.ptp([node.position for node in structure.nodes], axis=0) / 1e3,
+        families=[sum(lamella.family == f for lamella in design.lamellas) for f in (1, 2)],
+        size=np.ptp([node.position for node in design.nodes], axis=0) / 1e3,
         colours={family: css(colour) for family, colour in FAMILY_COLOURS.items()},
-        drawing=_drawing(max(parts, key=lambda part: round(part.length, 1))),
+        drawing=strip_drawing(max(parts, key=lambda part: round(part.length, 1))),
     )
     try:
         Path(path).write_text(page, encoding="utf-8")
@@ -90,16 +103,25 @@ def write_report(
         ) from None
 
 
-def _figure(structure: Structure, parts: Sequence[FlatPart], facade: PanelStructure | None) -> Any:
-    """The strips, and the panels above them: hidden until they are asked for."""
-    figure = shell_figure(structure, parts)
+def _figure(
+    jointed: Jointed, parts: Sequence[FlatPart], stress: BayStress, facade: PanelStructure | None
+) -> Any:
+    """Strips and connectors, and the panels above them: hidden until they are asked for."""
+    figure = shell_figure(jointed, parts, stress)
+    positions = np.array([node.position for node in jointed.design.nodes])
+    centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
+    figure.add_traces(connector_traces(jointed.connectors, centre))
     if facade is not None:
         from fabrication.export.panel_view import panel_traces
 
-        positions = np.array([node.position for node in structure.nodes])
-        for trace in panel_traces(facade, (positions.min(axis=0) + positions.max(axis=0)) / 2.0):
+        for trace in panel_traces(facade, centre):
             figure.add_trace(trace.update(visible="legendonly"))
     return figure
+
+
+def _json(value: Any) -> Markup:
+    """*value* for a script of the page."""
+    return Markup(json.dumps(value, allow_nan=False).replace("<", "\\u003c"))
 
 
 def shared(
@@ -185,42 +207,3 @@ def _readable(finding: Mapping[str, Any]) -> dict[str, Any]:
         shown |= {key: float(np.degrees(v)) * 1000.0 for key, v in values.items()}
         shown["unit"] = "degrees/m"
     return shown
-
-
-# ---- the longest strip ----------------------------------------------------------------------
-
-
-def _drawing(part: FlatPart) -> dict[str, Any]:
-    """A flat strip to look at, px: lengths to scale, its width and its slots not.
-
-    A station is its place along the strip, the place of its figure, the figure, and the mark of
-    the partner with its height; the two ends have no partner.
-    """
-    length, height = _STRIP
-    along, across = length / part.length, height / part.width
-    drawn = [
-        replace(
-            s, x=s.x * along, width=max(s.width * along, _THINNEST_SLOT), depth=s.depth * across
-        )
-        for s in part.slots
-    ]
-    x = np.array([0.0, *(slot.x for slot in part.slots), part.length])
-    figures = [fixed(station, 1) for station in x.tolist()]
-    partners = ["", *(slot.partner for slot in part.slots), ""]
-    behind = [0.8 if slot.edge is Edge.UPPER else 0.2 for slot in part.slots]
-    heights = [height * share for share in (0.0, *behind, 0.0)]
-    places = (x * along).round(1).tolist(), _apart(x * along).round(1).tolist()
-    return {
-        "part": part,
-        "length": length,
-        "height": height,
-        "corners": " ".join(f"{x:.1f},{height - y:.1f}" for x, y in outline(length, height, drawn)),
-        "stations": list(zip(*places, figures, partners, heights, strict=True)),
-    }
-
-
-def _apart(x: Floats) -> Floats:
-    """*x* (n,) in order, moved so far that neighbours are a pitch apart within the strip."""
-    steps = min(_PITCH, _STRIP[0] / (len(x) - 1)) * np.arange(len(x))
-    moved = np.maximum.accumulate(x - steps) + steps
-    return np.asarray(np.minimum(moved, _STRIP[0] - steps[::-1]))

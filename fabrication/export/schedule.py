@@ -1,4 +1,4 @@
-"""The cut list as CSV: one line per part."""
+"""The cut list and the bill of material as CSV: one line per part, one per thing bought or made."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fabrication.errors import OutputError
+from fabrication.jointed import BillLine
 from fabrication.nesting import NestedSheet
 from fabrication.parts import FlatPart
 from fabrication.stock import Material
@@ -24,14 +25,22 @@ COLUMNS = (
     "slots",
     "slot_width_min_mm",
     "slot_width_max_mm",
+    "holes",
+    "bevel_start_mm",
+    "bevel_end_mm",
     "mass_kg",
     "sheet",
 )
+"""Bevels: how much longer the near face is than the far one at either end; empty at a square end.
+A strip that lies on no sheet has none."""
+
+BILL_COLUMNS = ("item", "size", "quantity", "unit", "material", "mass_kg", "total_kg", "note")
+"""Of ``bill.csv``; mass_kg is that of one piece, empty where it is not known."""
 
 
 def mass(part: FlatPart, material: Material) -> float:
     """Mass of a part after cutting, kg."""
-    return part.area * part.thickness * material.density * 1e-9
+    return part.volume * material.density * 1e-9
 
 
 @dataclass(frozen=True)
@@ -62,18 +71,54 @@ def write_schedule(
         When the file cannot be written.
     """
     sheet_of = {p.part.mark: sheet.number for sheet in sheets for p in sheet.placements}
-    rows = [_row(part, material, sheet_of[part.mark]) for part in parts]
+    rows = [_row(part, material, sheet_of.get(part.mark, "")) for part in parts]
     rows += [_more(line) for line in more]
+    write_csv(path, "The cut list", [COLUMNS, *rows])
+
+
+def write_bill(path: Path | str, bill: Sequence[BillLine]) -> None:
+    """Write what a joint needs besides the strips, in the order of *bill*.
+
+    Raises
+    ------
+    OutputError
+        When the file cannot be written.
+    """
+    rows = [
+        (
+            *(line.item, line.size, f"{line.quantity:g}", line.unit, line.material),
+            "" if line.mass is None else six_digits(line.mass),
+            "" if line.mass is None else six_digits(line.mass * line.quantity),
+            line.note,
+        )
+        for line in bill
+    ]
+    write_csv(path, "The bill of material", [BILL_COLUMNS, *rows])
+
+
+def write_csv(path: Path | str, what: str, rows: Sequence[Sequence[str | int]]) -> None:
+    """Write *rows*, their headings first; *what* they are, for the message when that fails.
+
+    Raises
+    ------
+    OutputError
+        When the file cannot be written.
+    """
     try:
         with Path(path).open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([COLUMNS, *rows])
+            csv.writer(file).writerows(rows)
     except OSError as error:
         raise OutputError(
-            "The cut list cannot be written", where=str(path), value=error.strerror or ""
+            f"{what} cannot be written", where=str(path), value=error.strerror or ""
         ) from None
 
 
-def _row(part: FlatPart, material: Material, sheet: int) -> list[str | int]:
+def six_digits(value: float) -> str:
+    """*value* with six digits that count, without a power of ten."""
+    return np.format_float_positional(value, precision=6, fractional=False, trim="-")
+
+
+def _row(part: FlatPart, material: Material, sheet: int | str) -> list[str | int]:
     widths = [slot.width for slot in part.slots]
     return [
         part.mark,
@@ -85,7 +130,9 @@ def _row(part: FlatPart, material: Material, sheet: int) -> list[str | int]:
         len(part.slots),
         f"{min(widths):.2f}" if widths else "",
         f"{max(widths):.2f}" if widths else "",
-        np.format_float_positional(mass(part, material), precision=6, fractional=False, trim="-"),
+        len(part.holes),
+        *(f"{run:.2f}" if run else "" for run in part.bevels),
+        six_digits(mass(part, material)),
         sheet,
     ]
 
@@ -97,5 +144,5 @@ def _more(line: Line) -> list[str | int]:
     return [
         *(line.mark, 1, f"{line.length:.2f}"),
         *("" if line.width is None else f"{line.width:.2f}", cell(line.thickness), line.material),
-        *("", "", "", cell(line.mass), line.sheet),
+        *("", "", "", "", "", "", cell(line.mass), line.sheet),
     ]

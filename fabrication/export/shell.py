@@ -1,8 +1,9 @@
 """The shell in 3D, to turn and to hover over: a plotly figure of the built strips.
 
 Strips are drawn as their middle surfaces: the flat outline is cut into columns, and each column
-laid into place by the strip's own map. Slots are the only notches, so a column has one lower and
-one upper bound.
+laid into place by the strip's own map. A column has one lower and one upper bound: slots are drawn
+as rectangles, as deep as their rounded floors are on average, holes are left out, and a bevelled
+end is half-way between its two faces.
 """
 
 from __future__ import annotations
@@ -15,14 +16,19 @@ import numpy as np
 import plotly.graph_objects as go
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.cut import Edge
+from fabrication.cut import Edge, Floor, Slot
 from fabrication.export.words import fixed, plural
+from fabrication.jointed import Jointed
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
+from fabrication.strength import BayStress
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, Indices, Points
 
-_SAMPLES_PER_BAY = 6
+_SAMPLES_PER_BAY = range(2, 7)
+_COLUMNS = 10_000
+"""Samples per bay: fewest to most, and about how many columns all strips may have between slots."""
+
 _INK, _QUIET = "#1c232d", "#5a6472"
 LIGHT = {"ambient": 0.8, "diffuse": 0.35, "specular": 0.05, "roughness": 0.8, "fresnel": 0.05}
 _VIEW, _FIELD, _ASPECT = (0.62, -0.64, 0.46), np.pi / 4.0, 1.5
@@ -40,18 +46,21 @@ class _StripMesh:
     points : (n, 3) mm.
     triangles : (m, 3) point numbers.
     loop : (k,) point numbers around the outline, the first again at the end.
+    bays : (m,) number of the bay each triangle lies in, or nearest to.
     hover : what the strip says of itself.
     """
 
     points: Points
     triangles: Indices
     loop: Indices
+    bays: Indices
     hover: str
 
 
-def _strip_mesh(lamella: Lamella, part: FlatPart) -> _StripMesh:
-    """Columns between all outline corners and a few samples per bay, laid into place at once."""
-    x, lower, upper = _columns(part)
+def _strip_mesh(lamella: Lamella, part: FlatPart, stress: BayStress, index: int) -> _StripMesh:
+    """Columns between all slot walls and a few samples per bay, laid into place at once."""
+    per_bay = int(np.clip(_COLUMNS // len(stress), _SAMPLES_PER_BAY[0], _SAMPLES_PER_BAY[-1]))
+    x, lower, upper = _columns(part, per_bay)
     corner_x = np.stack([x[:-1], x[1:], x[1:], x[:-1]], axis=1)
     corner_y = np.stack([lower, lower, upper, upper], axis=1)
     corners = np.stack([corner_x.ravel(), corner_y.ravel()], axis=1)
@@ -59,48 +68,81 @@ def _strip_mesh(lamella: Lamella, part: FlatPart) -> _StripMesh:
     height = flat[:, 1] - part.width / 2.0
     quads = number.reshape(-1, 4)
     loop = np.r_[quads[:, :2].ravel(), quads[::-1, 2:].ravel(), quads[0, 0]]
+    bays = stress.of_strip(index)
+    middle = lamella.start + (x[:-1] + x[1:]) / 2.0
+    column_bay = bays[np.searchsorted(stress.end[bays][:-1], middle)]
     return _StripMesh(
         points=lamella.place(flat[:, 0] + lamella.start, np.zeros(len(flat)), height),
-        triangles=np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]),
+        triangles=np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1).reshape(-1, 3),
         loop=loop[np.r_[True, np.diff(loop) != 0]],
-        hover=f"<b>{lamella.mark}</b>, family {'AB'[lamella.family - 1]}<br>"
-        f"length {fixed(part.length, 1)} mm<br>{plural(len(part.slots), 'slot')}",
+        bays=np.repeat(column_bay, 2),
+        hover=_hover(lamella, part, stress, bays),
     )
 
 
-def _columns(part: FlatPart) -> tuple[Floats, Floats, Floats]:
+def _hover(lamella: Lamella, part: FlatPart, stress: BayStress, bays: Indices) -> str:
+    worst = int(bays[np.argmax(stress.utilisation[bays])])
+    cuts = [plural(len(part.slots), "slot")]
+    if part.holes:
+        cuts.append(plural(len(part.holes), "hole"))
+    return (
+        f"<b>{lamella.mark}</b>, family {'AB'[lamella.family - 1]}<br>"
+        f"length {fixed(part.length, 1)} mm<br>{', '.join(cuts)}<br>"
+        f"{fixed(100.0 * stress.utilisation[worst], 0)} % used at {stress.bays[worst]}"
+    )
+
+
+def _columns(part: FlatPart, per_bay: int) -> tuple[Floats, Floats, Floats]:
     """(c + 1,) ends of the columns along the strip, (c,) lower and (c,) upper bounds, mm."""
-    bays = np.unique(np.clip(np.r_[0.0, part.development.node_x, part.length], 0.0, part.length))
-    steps = np.arange(_SAMPLES_PER_BAY * (len(bays) - 1) + 1) / _SAMPLES_PER_BAY
+    first, last = abs(part.bevels[0]) / 2.0, part.length - abs(part.bevels[1]) / 2.0
+    bays = np.unique(np.clip(np.r_[first, part.development.node_x, last], first, last))
+    steps = np.arange(per_bay * (len(bays) - 1) + 1) / per_bay
     samples = np.interp(steps, np.arange(len(bays)), bays)
-    x = np.unique(np.clip(np.r_[part.outline[:, 0], samples], 0.0, part.length))
+    centres = np.array([slot.x for slot in part.slots])
+    half = np.array([slot.width for slot in part.slots]) / 2.0
+    x = np.unique(np.clip(np.r_[centres - half, centres + half, samples], first, last))
     x = x[np.r_[True, np.diff(x) > 1e-6]]
     middle = (x[:-1] + x[1:]) / 2.0
     notch = []
     for edge in (Edge.LOWER, Edge.UPPER):
-        slots = [(slot.x, slot.width, slot.depth) for slot in part.slots if slot.edge is edge]
+        slots = [(slot.x, slot.width, _depth(slot)) for slot in part.slots if slot.edge is edge]
         centre, width, depth = np.array(slots).reshape(-1, 3).T
         inside = np.abs(middle[:, None] - centre) < width / 2.0
         notch.append(np.where(inside, depth, 0.0).max(axis=1, initial=0.0))
     return x, notch[0], np.maximum(notch[0], part.width - notch[1])
 
 
-def shell_figure(structure: Structure, parts: Sequence[FlatPart]) -> Any:
-    """The shell as few traces: per family a mesh and its outlines; marks, nodes and axes."""
-    positions = np.array([node.position for node in structure.nodes])
+def _depth(slot: Slot) -> float:
+    """Depth of the rectangle that stands for a slot: a half circle is pi / 4 of its square."""
+    rounded = np.pi / 8.0 * slot.width if slot.floor is Floor.ROUND else 0.0
+    return float(slot.depth + rounded)
+
+
+def shell_figure(jointed: Jointed, parts: Sequence[FlatPart], stress: BayStress) -> Any:
+    """The shell as few traces: per family a mesh and its outlines; marks, nodes and axes.
+
+    Strips are those that are built, marks and nodes those of the design.
+
+    Parameters
+    ----------
+    parts : one per strip.
+    stress : of all bays of the strips; a mesh's *meta* says which triangles lie in which bay.
+    """
+    design, strips = jointed.design, jointed.strips
+    positions = np.array([node.position for node in design.nodes])
     centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
     traces = []
     for family in FAMILY_COLOURS:
         meshes = [
-            _strip_mesh(lamella, part)
-            for lamella, part in zip(structure.lamellas, parts, strict=True)
+            _strip_mesh(lamella, part, stress, index)
+            for index, (lamella, part) in enumerate(zip(strips.lamellas, parts, strict=True))
             if lamella.family == family
         ]
         traces += _family(family, meshes, centre) if meshes else []
-    traces.append(_marks(structure, centre))
-    points = np.concatenate([np.stack([t.x, t.y, t.z], axis=1) for t in traces]).astype(np.float64)
-    points = points[np.isfinite(points[:, 0])]
-    traces += [_nodes(structure, centre), axes_figure(points)]
+    traces.append(_marks(design, centre))
+    placed = [np.stack([t.x, t.y, t.z], axis=1) for t in traces if t.x is not None]
+    points = np.concatenate(placed).astype(np.float64)
+    traces += [_nodes(design, centre), axes_figure(points)]
     return go.Figure(traces, {"template": "none", "scene": {"camera": camera(points)}})
 
 
@@ -108,12 +150,14 @@ def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[A
     """All strips of a family as one mesh and one line.
 
     What a strip says is kept once, with its number of points; the page says it at every point.
+    Edges are numbers of the mesh's points, a strip's last one followed by that of a gap; the page
+    looks them up.
     """
     points = on_screen(np.concatenate([mesh.points for mesh in meshes]), centre)
     first = np.cumsum([0] + [len(mesh.points) for mesh in meshes[:-1]])
     triangles = np.concatenate([m.triangles + at for m, at in zip(meshes, first, strict=True)])
-    gap = np.full((1, 3), np.nan, dtype=np.float32)
-    loops = [points[m.loop + at] for m, at in zip(meshes, first, strict=True)]
+    gap = len(points)
+    loops = np.concatenate([np.r_[m.loop + at, gap] for m, at in zip(meshes, first, strict=True)])
     name, group = f"Family {'AB'[family - 1]}", f"family{family}"
     faces = go.Mesh3d(
         **xyz(points),
@@ -124,18 +168,29 @@ def _family(family: int, meshes: Sequence[_StripMesh], centre: Floats) -> list[A
         color=css(FAMILY_COLOURS[family]),
         lighting=LIGHT,
         hoverinfo="text",
-        meta={"texts": [m.hover for m in meshes], "counts": [len(m.points) for m in meshes]},
+        meta={
+            "texts": [m.hover for m in meshes],
+            "counts": [len(m.points) for m in meshes],
+            **_runs(np.concatenate([m.bays for m in meshes])),
+        },
     )
     edges = go.Scatter3d(
-        **xyz(np.concatenate([block for loop in loops for block in (loop, gap)])),
         mode="lines",
         name=f"{name}, edges",
         legendgroup=group,
         showlegend=False,
         line={"color": css(FAMILY_COLOURS[family], 0.7), "width": 1.0},
         hoverinfo="skip",
+        meta={"edges_of": name, "loops": loops.astype(np.min_scalar_type(gap))},
     )
     return [faces, edges]
+
+
+def _runs(bays: Indices) -> dict[str, list[int]]:
+    """Bays of triangles (m,) as runs of equal ones: which, and how many triangles long."""
+    starts = np.flatnonzero(np.r_[True, np.diff(bays) != 0])
+    lengths = np.diff(np.r_[starts, len(bays)])
+    return {"bays": bays[starts].tolist(), "triangles": lengths.tolist()}
 
 
 def _marks(structure: Structure, centre: Floats) -> Any:

@@ -241,7 +241,7 @@ def test_a_short_overhang_is_found(hypar, profile):
 
 UNITS = {
     **{"bend-radius": "mm", "twist": "rad/mm", "edgewise-bend": "N/mm2"},
-    **{"twist-stretch": "N/mm2", "slot-depth": "mm"},
+    **{"twist-stretch": "N/mm2", "slot-depth": "mm", "stress": "N/mm2"},
     **{"slot-spacing": "mm", "slot-at-end": "mm", "seam": "mm", "strips-cross": "mm"},
 }
 

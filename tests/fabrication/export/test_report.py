@@ -8,13 +8,18 @@ import pytest
 from plotly.offline import get_plotlyjs
 
 import gridshell as gs
+from fabrication.cut import Floor, Hole, Relief
 from fabrication.errors import OutputError
 from fabrication.export.report import write_report
 from fabrication.export.schedule import mass
-from fabrication.joints import SlotJoint
+from fabrication.jointed import BillLine
+from fabrication.joints import DoubleSlotJoint, SlotJoint, StarWasher
 from fabrication.nesting import nest
-from fabrication.parts import flat_parts
-from fabrication.stock import STAINLESS, Profile, Sheet
+from fabrication.outlines import Frame
+from fabrication.parts import parts_of
+from fabrication.shapes import Body, Prisms, Shape, circle
+from fabrication.stock import S235, STAINLESS, Profile, Sheet
+from fabrication.strength import NOT_CHECKED, bay_stress
 from fabrication.structures import structure
 
 HOSTILE = "</script><script>alert('x')</script> & \"Söhne\""
@@ -68,7 +73,15 @@ def finding(severity, **changes):
 def built(surface, patch):
     net, _ = gs.diagonal_meshes(gs.control_patch(surface, patch))
     shell = structure(net, Profile(100.0, 2.5, STAINLESS))
-    return shell, flat_parts(shell, SlotJoint())
+    jointed = SlotJoint().build(shell)
+    return jointed, parts_of(jointed)
+
+
+def doubled(surface, patch):
+    net, _ = gs.diagonal_meshes(gs.control_patch(surface, patch))
+    shell = structure(net, Profile(100.0, 1.5, S235))
+    jointed = DoubleSlotJoint(30.0, 8.0, StarWasher(4.0, 18.0, 8.0, S235)).build(shell)
+    return jointed, parts_of(jointed)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +95,7 @@ def page(tmp_path, catenoid):
 
     def write(report=REPORT, name="Pavilion", design=catenoid):
         path = tmp_path / "report.html"
-        write_report(path, name=name, report=report, structure=design[0], parts=design[1])
+        write_report(path, name=name, report=report, jointed=design[0], parts=design[1])
         text = path.read_text(encoding="utf-8")
         assert text.count(get_plotlyjs()) == 1
         return text.replace(get_plotlyjs(), "")
@@ -101,6 +114,13 @@ def trace(text, name):
 def array(trace, names):
     columns = [np.frombuffer(base64.b64decode(trace[n]["bdata"]), trace[n]["dtype"]) for n in names]
     return np.stack(columns, axis=1).astype(float)
+
+
+def edges_of(text, name):
+    """Points of the edges, as the page looks them up in the mesh; NaN between two strips."""
+    points, loops = array(trace(text, name), "xyz"), trace(text, f"{name}, edges")["meta"]["loops"]
+    numbers = np.frombuffer(base64.b64decode(loops["bdata"]), loops["dtype"])
+    return np.vstack([points, np.full((1, 3), np.nan)])[numbers]
 
 
 def visible(text):
@@ -126,9 +146,15 @@ def test_the_policy_forbids_requests(page):
 
 
 def test_hostile_texts_stay_texts(page, catenoid):
-    shell, parts = catenoid
+    jointed, parts = catenoid
+    shell = jointed.design
     marked = replace(shell.lamellas[0], mark=HOSTILE)
     shell = replace(shell, lamellas=(marked, *shell.lamellas[1:]))
+    line = BillLine(HOSTILE, HOSTILE, 1.0, HOSTILE, HOSTILE, None, HOSTILE)
+    ring = Shape(HOSTILE, circle(5.0), 0.0, 2.0)
+    body = Body(HOSTILE, 0, Frame(np.zeros(3), np.eye(3)[0], np.eye(3)[1]))
+    bad = Prisms(HOSTILE, (0.5, 0.5, 0.5), (ring,), (body,))
+    jointed = replace(jointed, design=shell, strips=shell, bill=(line,), connectors=(bad,))
     parts = (replace(parts[0], mark=HOSTILE), *parts[1:])
     report = REPORT | {
         "net": REPORT["net"] | {"status": HOSTILE, "kind": HOSTILE},
@@ -136,7 +162,7 @@ def test_hostile_texts_stay_texts(page, catenoid):
         "findings": [finding("error", code=HOSTILE, where=HOSTILE, message=HOSTILE)],
         "timing": {HOSTILE: 1.0},
     }
-    text, tame = page(report, HOSTILE, (shell, parts)), page()
+    text, tame = page(report, HOSTILE, (jointed, parts)), page()
     assert text.count("<script") == tame.count("<script") == 2
     assert text.count("</script") == tame.count("</script") == 2
     assert "<h1>&lt;/script&gt;" in text
@@ -150,13 +176,13 @@ def test_the_same_design_writes_the_same_page(page):
 def test_a_folder_that_is_missing_is_named(tmp_path, catenoid):
     path = tmp_path / "nowhere" / "report.html"
     with pytest.raises(OutputError, match="nowhere"):
-        write_report(path, name="x", report=REPORT, structure=catenoid[0], parts=catenoid[1])
+        write_report(path, name="x", report=REPORT, jointed=catenoid[0], parts=catenoid[1])
 
 
 def test_sixty_lamellas_of_thirty_slots_stay_below_two_megabytes(page):
     design = built(gs.Enneper(4000.0), gs.AsymptoticPatch((-1, 1), (-1, 1), (30, 30)))
-    assert len(design[0].lamellas) == 60
-    assert len(design[0].nodes) == 900
+    assert len(design[0].design.lamellas) == 60
+    assert len(design[0].design.nodes) == 900
     assert len(page(design=design).encode()) < 2e6
 
 
@@ -171,26 +197,26 @@ def test_the_strips_have_the_area_of_their_parts(page, catenoid):
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         wanted = sum(
             part.area
-            for lamella, part in zip(catenoid[0].lamellas, catenoid[1], strict=True)
+            for lamella, part in zip(catenoid[0].strips.lamellas, catenoid[1], strict=True)
             if lamella.family == family
         )
         assert np.linalg.norm(normals, axis=1).sum() / 2.0 == pytest.approx(wanted / 1e6, rel=2e-3)
 
 
 def test_every_slot_corner_is_on_the_outline(page, catenoid):
-    shell, parts = catenoid
+    shell, parts = catenoid[0].design, catenoid[1]
     lamella, part = shell.lamellas[0], parts[0]
     positions = np.array([node.position for node in shell.nodes])
     centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
     x, y = part.outline.T
     corners = lamella.place(x + lamella.start, 0.0 * x, y - part.width / 2.0) - centre
-    edges = array(trace(page(), "Family A, edges"), "xyz")
+    edges = edges_of(page(), "Family A")
     apart = np.linalg.norm(corners[:, None] / 1e3 - edges[None], axis=2)
     assert np.nanmin(apart, axis=1).max() < 2e-4
 
 
 def test_one_outline_per_lamella(page):
-    edges = array(trace(page(), "Family B, edges"), "xyz")
+    edges = edges_of(page(), "Family B")
     assert np.isnan(edges).all(axis=1).sum() == 12
 
 
@@ -198,23 +224,26 @@ def test_hovering_tells_mark_family_length_and_slots(page, catenoid):
     mesh, part = trace(page(), "Family B"), catenoid[1][12]
     assert part.mark == "B1"
     length = f"{part.length:,.1f}".replace(",", "\u202f")
-    told = f"<b>B1</b>, family B<br>length {length} mm<br>{len(part.slots)} slots"
-    assert mesh["meta"]["texts"][0] == told
+    told = f"<b>B1</b>, family B<br>length {length} mm<br>{len(part.slots)} slots<br>"
+    assert re.fullmatch(re.escape(told) + r"\d+ % used at N\d+-N\d+", mesh["meta"]["texts"][0])
     assert sum(mesh["meta"]["counts"]) == len(array(mesh, "x"))
 
 
 def test_nodes_tell_name_angle_and_marks(page, catenoid):
-    nodes, first = trace(page(), "Nodes"), catenoid[0].nodes[0]
-    marks = " × ".join(catenoid[0].lamellas[c.lamella].mark for c in first.crossings)
+    design = catenoid[0].design
+    nodes, first = trace(page(), "Nodes"), design.nodes[0]
+    marks = " × ".join(design.lamellas[c.lamella].mark for c in first.crossings)
     assert nodes["text"][0] == f"<b>N1</b><br>{np.degrees(first.angle):.2f}°<br>{marks}"
-    assert len(nodes["text"]) == len(catenoid[0].nodes)
+    assert len(nodes["text"]) == len(design.nodes)
 
 
 def test_every_mark_is_in_the_view_and_in_the_cut_list(page, catenoid):
     text = page()
-    marks = [lamella.mark for lamella in catenoid[0].lamellas]
+    marks = [lamella.mark for lamella in catenoid[0].design.lamellas]
     assert trace(text, "Marks")["text"] == marks
-    assert re.findall(r"</span>([AB]\d+)</td>", text) == marks
+    for table in ("cut-list", "stress"):
+        rows = text[text.index(f'id="{table}"') :]
+        assert re.findall(r"</span>([AB]\d+)</td>", rows[: rows.index("</table>")]) == marks
 
 
 def test_the_camera_sees_everything_and_fills_the_frame(page):
@@ -241,8 +270,8 @@ def test_a_shell_far_from_the_origin_keeps_its_shape(page, catenoid):
         patch = gs.BisectingPatch((-0.8, 0.8), 24)
         control = gs.control_patch(gs.Catenoid(1000.0), patch)
         net, _ = gs.diagonal_meshes(control.moved(control.vertices + by))
-        shell = structure(net, Profile(100.0, 2.5, STAINLESS))
-        return shell, flat_parts(shell, SlotJoint())
+        jointed = SlotJoint().build(structure(net, Profile(100.0, 2.5, STAINLESS)))
+        return jointed, parts_of(jointed)
 
     here, there = (
         array(trace(page(design=moved(by)), "Nodes"), "xyz") for by in (0.0, [5e8, 5e9, 0.0])
@@ -344,18 +373,19 @@ def test_twist_is_told_in_degrees_per_metre_and_powers_are_raised(page):
 
 
 def test_clearance_raw_sheet_and_sheet_of_every_part_are_told(tmp_path, catenoid):
-    shell, parts = catenoid
+    jointed, parts = catenoid
     sheets = nest(parts, Sheet(6000.0, 700.0))
     assert len(sheets) > 1
     path = tmp_path / "report.html"
     more = {"sheets": sheets, "clearance": 0.25}
-    write_report(path, name="x", report=REPORT, structure=shell, parts=parts, **more)
+    write_report(path, name="x", report=REPORT, jointed=jointed, parts=parts, **more)
     text = path.read_text(encoding="utf-8").replace(get_plotlyjs(), "")
     words = visible(text)
     assert "Slots with 0.25 mm clearance." in words
     assert f"Cut from {len(sheets)} raw sheets of 6000 × 700 mm." in words
     number = {p.part.mark: sheet.number for sheet in sheets for p in sheet.placements}
-    rows = re.findall(r"<tr>\s*<td data-value.*?</tr>", text, flags=re.DOTALL)
+    listed = text[text.index('id="cut-list"') :]
+    rows = re.findall(r"<tr>\s*<td data-value.*?</tr>", listed, flags=re.DOTALL)
     for part, row in zip(parts, rows, strict=True):
         cells = re.findall(r'data-value="([^"]*)"', row)
         assert float(cells[5]) == pytest.approx(mass(part, STAINLESS))
@@ -363,7 +393,9 @@ def test_clearance_raw_sheet_and_sheet_of_every_part_are_told(tmp_path, catenoid
 
 
 def test_what_is_not_checked_is_said(page):
-    assert "Not checked: loads, deflections, buckling and supports" in visible(page())
+    words = visible(page())
+    for thing in NOT_CHECKED:
+        assert thing in words[words.index("Not checked:") :]
 
 
 def test_the_cut_list_tells_lengths_slots_and_totals(page, catenoid):
@@ -385,9 +417,145 @@ def test_the_longest_strip_is_drawn_with_its_stations(page, catenoid):
         assert f">{station:,.1f}</text>".replace(",", "\u202f") in drawing
     for slot in part.slots:
         assert f">{slot.partner}</text>" in drawing
-    corners = re.search(r'points="([^"]*)"', drawing)[1].split()
-    assert len(corners) == len(part.outline)
+    corners = re.search(r'class="strip" d="([^"]*)"', drawing)[1]
+    assert len(re.findall("[ML]", corners)) - 1 == len(part.outline)
 
 
 def test_times_are_listed(page):
     assert "optimise 0.83 STEP 4.10" in visible(page())
+
+
+# ---- other joints ---------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def double():
+    return doubled(gs.Catenoid(4000.0), gs.AsymptoticPatch((-0.3, 0.3), (-0.3, 0.3), (4, 4)))
+
+
+def test_both_strips_of_a_double_lamella_are_drawn_and_listed(page, double):
+    text, (jointed, parts) = page(design=double), double
+    assert "8 lamellas, 16 nodes. 16 strips along the lamellas." in visible(text)
+    assert len(trace(text, "Family A")["meta"]["texts"]) == 8
+    assert trace(text, "Marks")["text"] == [one.mark for one in jointed.design.lamellas]
+    assert len(trace(text, "Nodes")["text"]) == len(jointed.design.nodes)
+    listed = text[text.index('id="cut-list"') :]
+    assert re.findall(r"</span>([AB]\d[LR])</td>", listed) == [part.mark for part in parts]
+
+
+def test_connectors_lie_where_they_are_and_weigh_what_they_do(page, double):
+    """Put together as the page does it: the meshes' volumes and extents are those of the bodies."""
+    text, jointed = page(design=double), double[0]
+    positions = np.array([node.position for node in jointed.design.nodes])
+    centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
+    for prisms in jointed.connectors:
+        meta = trace(text, prisms.name.capitalize())["meta"]
+        assert meta["marks"] == [body.mark for body in prisms.bodies]
+        frames = np.array(meta["frames"]).reshape(-1, 3, 3)
+        volume = 0.0
+        for body, number, (origin, x, y) in zip(prisms.bodies, meta["bodies"], frames, strict=True):
+            shape = meta["shapes"][number]
+            points = np.array(shape["points"]).reshape(-1, 3)
+            faces = np.array(shape["faces"]).reshape(-1, 3)
+            placed = origin + points @ np.array([x, y, np.cross(x, y)])
+            middle = body.frame.place(prisms.shapes[body.shape].outline[:, :2]).mean(axis=0)
+            assert np.linalg.norm((middle - centre) / 1e3 - placed.mean(axis=0)) < 0.08
+            a, b, c = placed[faces].swapaxes(0, 1)
+            volume += np.einsum("nc,nc->n", a, np.cross(b, c)).sum() / 6.0
+        wanted = sum(prisms.shapes[body.shape].volume for body in prisms.bodies) * 1e-9
+        assert volume == pytest.approx(wanted, rel=0.12)
+
+
+def test_the_bill_is_listed_with_its_masses(page, double):
+    words, bill = visible(page(design=double)), double[0].bill
+    listed = words[words.index("Bill of material") :]
+    for line in bill:
+        assert f"{line.item} {line.size} {line.quantity:.0f} {line.unit}" in listed
+
+
+def test_a_joint_without_a_bill_shows_none(page):
+    assert "Bill of material" not in visible(page())
+
+
+def test_sixty_double_lamellas_with_all_their_bolts_stay_below_eight_megabytes(page):
+    design = doubled(gs.Enneper(4000.0), gs.AsymptoticPatch((-1, 1), (-1, 1), (30, 30)))
+    text = page(design=design)
+    assert sum(len(prisms.bodies) for prisms in design[0].connectors) > 900
+    assert len(text.encode()) + len(get_plotlyjs().encode()) < 8e6
+    assert trace(text, "Bolts")["visible"] == "legendonly"
+
+
+# ---- colours and stress ---------------------------------------------------------------------
+
+
+def shades(text):
+    return json.loads(re.search(r"^const \{ scale, shades \} = (.*);$", text, re.MULTILINE)[1])
+
+
+def test_every_triangle_has_the_colour_of_its_bay(page, catenoid):
+    text, (jointed, parts) = page(), catenoid
+    stress = bay_stress(jointed.strips, parts)
+    for shade in shades(text)["shades"]:
+        assert len(shade["values"]) == len(stress)
+        assert 0.0 <= min(shade["values"]) <= max(shade["values"]) <= 1.0
+    used = next(s for s in shades(text)["shades"] if s["name"] == "Utilisation")
+    np.testing.assert_allclose(used["values"], np.minimum(stress.utilisation, 1.0), atol=6e-4)
+    for name, family in (("Family A", 1), ("Family B", 2)):
+        mesh = trace(text, name)
+        faces = array(mesh, "ijk").astype(int)
+        meta = mesh["meta"]
+        bays = np.repeat(meta["bays"], meta["triangles"])
+        assert len(bays) == len(faces)
+        middles = array(mesh, "xyz")[faces].mean(axis=1)
+        lamellas = jointed.strips.lamellas
+        assert {lamellas[i].family for i in stress.strip[bays]} == {family}
+        positions = np.array([node.position for node in jointed.design.nodes])
+        centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
+        for k in range(0, len(bays), 97):
+            lamella = lamellas[stress.strip[bays[k]]]
+            s = np.linspace(stress.start[bays[k]] - 60.0, stress.end[bays[k]] + 60.0, 60)
+            curve = (lamella.axis.spline(s) - centre) / 1e3
+            assert np.linalg.norm(curve - middles[k], axis=1).min() < 0.06
+
+
+def test_the_table_tells_the_worst_bay_of_every_strip(page, catenoid):
+    words, (jointed, parts) = visible(page()), catenoid
+    stress = bay_stress(jointed.strips, parts)
+    listed = words[words.index("Stress by strip") :]
+    for index, lamella in enumerate(jointed.strips.lamellas):
+        bays = stress.of_strip(index)
+        worst = bays[np.argmax(stress.utilisation[bays])]
+        used = 100.0 * stress.utilisation[worst]
+        assert f"{lamella.mark} {stress.bays[worst]} {used:.0f} " in listed
+
+
+def test_a_strip_with_rounded_floors_holes_and_bevels_is_drawn_with_them(page, catenoid):
+    jointed, _ = catenoid
+    cuts = {
+        mark: replace(own, holes=(Hole(60.0, 50.0, 9.0, "N1", "bolt M8"),), bevels=(12.0, -7.0))
+        for mark, own in jointed.cuts.items()
+    }
+    made = replace(jointed, cuts=cuts)
+    for relief, arcs in ((Relief(Floor.ROUND), 1), (Relief(Floor.DOGBONE, 0.4), 2)):
+        parts = parts_of(made, relief)
+        text = page(design=(made, parts))
+        drawing = text[text.index("<svg") : text.index("</svg>")]
+        path = re.search(r'class="strip" d="([^"]*)"', drawing)[1]
+        longest = max(parts, key=lambda part: round(part.length, 1))
+        assert path.count("A") == arcs * len(longest.slots)
+        assert drawing.count("<circle") == 1
+        assert drawing.count("stroke-dasharray") == 2
+        words = visible(text)
+        assert f"with {relief.floor.value} floors" in words
+        assert "1 hole of 9 mm." in words
+        assert "12.0 / −7.0" in words
+
+
+def test_a_round_floor_is_drawn_as_large_as_it_is(page, catenoid):
+    jointed = catenoid[0]
+    parts = parts_of(jointed, Relief(Floor.ROUND))
+    mesh = trace(page(design=(jointed, parts)), "Family A")
+    corners = array(mesh, "xyz")[array(mesh, "ijk").astype(int)]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    wanted = sum(p.area for p in parts if p.mark.startswith("A"))
+    assert np.linalg.norm(normals, axis=1).sum() / 2.0 == pytest.approx(wanted / 1e6, rel=2e-3)

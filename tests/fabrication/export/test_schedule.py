@@ -1,10 +1,13 @@
 import csv
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import fabrication as fab
+from fabrication.cut import Hole
 from fabrication.errors import OutputError
-from fabrication.export.schedule import COLUMNS, mass
+from fabrication.export.schedule import BILL_COLUMNS, COLUMNS, Line, mass, write_bill
 
 
 @pytest.fixture
@@ -84,3 +87,44 @@ def test_a_folder_that_is_not_there_is_an_error(strip, tmp_path):
     with pytest.raises(OutputError) as info:
         fab.write_schedule(tmp_path / "missing" / "parts.csv", parts, nested, fab.S235)
     assert "parts.csv" in info.value.where
+
+
+def test_holes_and_bevels_are_listed(strip, tmp_path):
+    holes = tuple(Hole(100.0 * k, 50.0, 9.0, "N1", "bolt M8") for k in (1, 2, 3))
+    parts = [replace(strip("A1", 1000.0), holes=holes, bevels=(3.25, 0.0))]
+    nested = fab.nest(parts, fab.Sheet(3e3, 1e3))
+    fab.write_schedule(tmp_path / "parts.csv", parts, nested, fab.S235)
+    (row,) = csv.DictReader((tmp_path / "parts.csv").read_text().splitlines())
+    assert (row["holes"], row["bevel_start_mm"], row["bevel_end_mm"]) == ("3", "3.25", "")
+    removed = 3.0 * np.pi * 9.0**2 / 4.0 + 3.25 * 100.0 / 2.0
+    assert float(row["mass_kg"]) == pytest.approx((100e3 - removed) * 2.5 * 7850e-9, rel=1e-5)
+
+
+def test_a_strip_cut_from_no_sheet_names_none(strip, tmp_path):
+    fab.write_schedule(tmp_path / "parts.csv", [strip("A1", 1000.0)], [], fab.S235)
+    (row,) = csv.DictReader((tmp_path / "parts.csv").read_text().splitlines())
+    assert row["sheet"] == ""
+
+
+def test_more_lines_stand_in_the_same_columns(strip, tmp_path):
+    more = [Line("T1", 1200.0, mass=2.5, sheet="panels-01")]
+    fab.write_schedule(tmp_path / "parts.csv", [strip("A1", 1000.0)], [], fab.S235, more)
+    row = list(csv.DictReader((tmp_path / "parts.csv").read_text().splitlines()))[1]
+    assert (row["mark"], row["mass_kg"], row["sheet"]) == ("T1", "2.5", "panels-01")
+
+
+def test_the_bill_of_a_double_lamella_lists_bolts_and_washers(enneper, tmp_path):
+    washer = fab.StarWasher(4.0, 18.0, 8.0, fab.S235)
+    jointed = fab.DoubleSlotJoint(30.0, 8.0, washer).build(enneper.structure)
+    write_bill(tmp_path / "bill.csv", jointed.bill)
+    rows = list(csv.DictReader((tmp_path / "bill.csv").read_text().splitlines()))
+    assert tuple(rows[0]) == BILL_COLUMNS
+    assert [(row["item"], row["size"]) for row in rows] == [
+        (line.item, line.size) for line in jointed.bill
+    ]
+    washers = [row for row in rows if row["item"] == "star washer"]
+    assert sum(int(row["quantity"]) for row in washers) == 2 * len(enneper.structure.nodes)
+    for row in washers:
+        total = float(row["mass_kg"]) * int(row["quantity"])
+        assert float(row["total_kg"]) == pytest.approx(total, rel=1e-5)
+    assert {row["mass_kg"] for row in rows if row["item"] == "nut"} == {""}
