@@ -82,7 +82,7 @@ def play(grid: FlatGrid, widths: Floats, angles: Floats, thickness: float) -> Fl
 
 
 def usual_slip(grid: FlatGrid, widths: Floats, angles: Floats, thickness: float) -> Floats:
-    """(m,) what each bay may slip at node *angles*: its play, as far as common slots have it, mm."""
+    """(m,) what a bay may slip at node *angles*: its play, up to that of common slots, mm."""
     return np.clip(play(grid, widths, angles, thickness), SLIP, _LOOSE)
 
 

@@ -107,7 +107,8 @@ class FlatState:
         """What to write beside a drawing of it."""
         angles = np.degrees(self._angles)
         turned = (
-            f"node angles {angles.min():.1f} to {angles.max():.1f} degrees, mean {angles.mean():.1f}"
+            f"node angles {angles.min():.1f} to {angles.max():.1f} degrees, "
+            f"mean {angles.mean():.1f}"
             if len(angles)
             else "no strips of two families cross"
         )
