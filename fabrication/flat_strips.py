@@ -51,7 +51,9 @@ class FlatStrip:
         nodes = np.r_[inner, self.stations[-1]]
         s = np.r_[self.start, nodes[(nodes > self.start) & (nodes < self.end)], self.end]
         held = np.clip(s, self.stations[0], self.stations[-1])
-        return np.asarray(self.curve(held) + (s - held)[:, None] * self.curve(held, 1))
+        ahead = self.curve(held, 1)
+        ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+        return np.asarray(self.curve(held) + (s - held)[:, None] * ahead)
 
 
 def _curves(grid: FlatGrid, p: Floats) -> list[CubicSpline]:

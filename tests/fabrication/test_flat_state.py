@@ -1,4 +1,4 @@
-"""Flat segments: exact nets, independent minimisation, slots that do and do not let an angle pass."""
+"""Flat segments: exact nets, an independent minimisation, slots that let an angle pass or not."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from scipy.optimize import minimize
 
 import fabrication as fab
 import gridshell as gs
+from fabrication.errors import OutputError
 from fabrication.flat_checks import SLIP, filled, flat_findings
 from fabrication.flat_grid import flat_grid
 from fabrication.flat_state import FlatState, lay_flat
@@ -84,7 +85,7 @@ def test_a_curved_net_that_only_shears_lies_straight(profile):
 
 
 def test_hoops_lie_open_at_their_seams(tube, profile):
-    state = lay_flat(LOOSE.build(tube.structure))
+    state = lay_flat(LOOSE.build(tube.structure), slip=SLIP)
     hoop = next(s for s in state.strips if tube.lamella(s.mark).closed)
     assert np.abs(state.slips).max() < SLIP
     assert state.size[0] == pytest.approx(tube.lamella(hoop.mark).length, rel=0.02)
@@ -95,27 +96,39 @@ def test_hoops_lie_open_at_their_seams(tube, profile):
 
 @pytest.mark.parametrize("name", ["catenoid", "enneper", "hypar", "pair", "saddle"])
 def test_distances_along_the_strips_are_kept(name, request):
-    """Measured again on other splines through the nodes, in space instead of the plane."""
     structure = request.getfixturevalue(name).structure
+    lengths = {lamella.mark: lamella.length for lamella in structure.lamellas}
     state = lay_flat(LOOSE.build(structure), slip=0.0)
     assert np.abs(state.slips).max() < 0.02
     for strip in state.strips:
-        flat = np.column_stack([state.positions[strip.nodes], np.zeros(len(strip.nodes))])
-        found = np.diff(axis_curve(flat, closed=False).stations)
-        assert found == pytest.approx(np.diff(strip.stations), rel=2e-3)
-        if len(found) > 3:
-            assert found.sum() == pytest.approx(np.ptp(strip.stations), rel=5e-4)
+        steps = np.linalg.norm(np.diff(strip.points(per_bay=60), axis=0), axis=1)
+        assert steps.sum() == pytest.approx(lengths[strip.mark], rel=2e-5)
 
 
-def bending(state: FlatState, p: Floats) -> float:
-    energy = 0.0
+def test_distances_are_kept_on_another_spline_too(catenoid):
+    """The curve of a lamella in space, through nodes that lie on the ground."""
+    state = lay_flat(LOOSE.build(catenoid.structure), slip=0.0)
     for strip in state.strips:
-        q, bays = p[strip.nodes], np.diff(strip.stations)
-        for k in range(1, len(q) - 1):
-            width = (bays[k - 1] + bays[k]) / 2.0
-            turn = (q[k + 1] - q[k]) / bays[k] - (q[k] - q[k - 1]) / bays[k - 1]
-            energy += float(turn @ turn) / width
-    return 1e3 * energy
+        flat = np.column_stack([state.positions[strip.nodes], np.zeros(len(strip.nodes))])
+        found = axis_curve(flat, closed=False).stations
+        assert np.diff(found) == pytest.approx(np.diff(strip.stations), abs=0.05)
+
+
+def bending(state: FlatState) -> Floats:
+    """(2k, 2n) rows whose squares are the energy of one turn each."""
+    rows = []
+    for strip in state.strips:
+        bays = np.diff(strip.stations)
+        for k in range(1, len(strip.nodes) - 1):
+            width = np.sqrt((bays[k - 1] + bays[k]) / 2.0)
+            for side in (0, 1):
+                row = np.zeros((len(state.names), 2))
+                before, here, after = strip.nodes[k - 1 : k + 2]
+                row[after, side] += 1.0 / bays[k]
+                row[here, side] -= 1.0 / bays[k] + 1.0 / bays[k - 1]
+                row[before, side] += 1.0 / bays[k - 1]
+                rows.append(row.ravel() / width)
+    return np.array(rows)
 
 
 def mean_angle(state: FlatState, grid: object, p: Floats) -> float:
@@ -138,17 +151,20 @@ def test_no_other_state_with_these_lengths_bends_less(catenoid):
         found = np.linalg.norm(p[state.edges[:, 1]] - p[state.edges[:, 0]], axis=1)
         return np.r_[(found - chords) / unit, mean_angle(state, grid, p) - state.opening]
 
-    start = state.positions + 8.0 * np.sin(np.arange(2 * len(state.names))).reshape(-1, 2)
+    rows = 1e4 * bending(state)
+    lying = state.positions.ravel() / unit
+    start = lying + 0.016 * np.sin(np.arange(len(lying)))
     best = minimize(
-        lambda x: bending(state, unit * x.reshape(-1, 2)),
-        start.ravel() / unit,
+        lambda x: float(((rows @ x) ** 2).sum()),
+        start,
+        jac=lambda x: 2.0 * rows.T @ (rows @ x),
         method="SLSQP",
         constraints={"type": "eq", "fun": kept},
         options={"maxiter": 300, "ftol": 1e-13},
     )
     assert np.abs(kept(best.x)).max() < 1e-6
-    assert bending(state, start) > 2.0 * best.fun
-    assert bending(state, state.positions) == pytest.approx(best.fun, rel=1e-3)
+    assert ((rows @ start) ** 2).sum() > 2.0 * best.fun
+    assert ((rows @ lying) ** 2).sum() == pytest.approx(best.fun, rel=1e-3)
 
 
 def test_the_state_does_not_depend_on_where_the_net_lies(enneper):
@@ -248,7 +264,7 @@ def test_tight_slots_are_found_and_the_advice_helps(catenoid):
     state = lay_flat(tight.build(catenoid.structure))
     (found,) = (f for f in state.findings if f.code == "flat-angle")
     assert found.value < found.limit
-    assert found.limit == pytest.approx(degrees(2.0 * atan(2.5 / 2.6)), abs=0.3)
+    assert found.limit == pytest.approx(degrees(2.0 * atan(2.5 / 2.6)), abs=0.6)
     more = float(found.message.split("use ")[1].split(" mm more")[0])
     wider = lay_flat(fab.SlotJoint(clearance=0.1 + more).build(catenoid.structure))
     assert "flat-angle" not in codes(wider)
@@ -272,7 +288,8 @@ def test_too_much_bending_and_folding_are_found(profile):
 def test_distances_beyond_the_play_are_found(catenoid, profile):
     grid = flat_grid(catenoid.structure)
     slips = np.zeros(len(grid.edges))
-    slips[3], slips[4] = 0.9, -0.4
+    first, second = np.flatnonzero(grid.strip == 1)[:2]
+    slips[first], slips[second] = 0.9, -0.4
     (found,) = flat_findings(
         grid,
         (),
@@ -344,7 +361,7 @@ def test_the_list_of_nodes_is_read_back(catenoid, tmp_path):
 
 
 def test_a_list_that_cannot_be_written_is_told(pair, tmp_path):
-    with pytest.raises(fab.OutputError, match="flat segment"):
+    with pytest.raises(OutputError, match="flat segment"):
         fab.write_flat_state(tmp_path / "none" / "flat.csv", lay_flat(LOOSE.build(pair.structure)))
 
 
