@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from fabrication.contacts import Contacts, Lap, Order, order_of
+from fabrication.cut import Edge
 from fabrication.finding import Finding, Severity
 from fabrication.joint_contacts import contacts_of
 from fabrication.jointed import Jointed
@@ -105,7 +106,10 @@ def assembly_order(jointed: Jointed) -> Assembly:
     findings = (*faulty, *_locked_findings(jointed, contacts, order), *_rings(jointed, order))
     if order.locked or faulty:
         return Assembly((), findings)
-    steps = [*_strip_steps(jointed, contacts, order), *_last_steps(jointed, contacts, levels)]
+    steps = [
+        *_strip_steps(jointed, contacts, order, levels),
+        *_last_steps(jointed, contacts, levels),
+    ]
     numbered = (
         AssemblyStep(number, step.marks, step.what, step.nodes, step.side, step.spread)
         for number, step in enumerate(steps, start=1)
@@ -143,7 +147,9 @@ class _Entry:
     on: tuple[str, ...]
 
 
-def _strip_steps(jointed: Jointed, contacts: Contacts, order: Order) -> Iterator[AssemblyStep]:
+def _strip_steps(
+    jointed: Jointed, contacts: Contacts, order: Order, levels: bool
+) -> Iterator[AssemblyStep]:
     lamellas = jointed.strips.lamellas
     axes = {node.name: node.axis for node in jointed.strips.nodes}
     entries = list(_entries(jointed, contacts, order))
@@ -171,10 +177,12 @@ def _strip_steps(jointed: Jointed, contacts: Contacts, order: Order) -> Iterator
             )
         elif first.on:
             on = tuple(dict.fromkeys(mark for entry in group for mark in entry.on))
-            yield AssemblyStep(0, marks, f"Place {_listed(marks)} against {_listed(on)}.")
+            how = f"Lay {_listed(marks)} across" if levels else f"Fit {_listed(marks)} against"
+            yield AssemblyStep(0, marks, f"{how} {_listed(on)}.")
         else:
-            up = ", slots up" if contacts.laps else ""
-            yield AssemblyStep(0, marks, f"Lay out {_listed(marks)} side by side{up}.")
+            up = ", slots up" if _open_upwards(jointed, marks) else ""
+            beside = " side by side" if len(marks) > 1 else ""
+            yield AssemblyStep(0, marks, f"Lay out {_listed(marks)}{beside}{up}.")
 
 
 def _entries(jointed: Jointed, contacts: Contacts, order: Order) -> Iterator[_Entry]:
@@ -222,14 +230,19 @@ def _last_steps(jointed: Jointed, contacts: Contacts, levels: bool) -> Iterator[
     for prisms in kinds:
         fit = ": they only fit once all strips are in their final shape" if levels else ""
         yield AssemblyStep(
-            0, (prisms.name,), f"Put in all {len(prisms.bodies)} {_plural(prisms.name)}{fit}."
+            0, (prisms.name,), f"Put in {_counted(len(prisms.bodies), prisms.name)}{fit}."
         )
     if any(line.item == "weld" for line in jointed.bill):
         yield AssemblyStep(0, ("weld",), "Check the node angles and weld.")
 
 
-def _plural(name: str) -> str:
-    return name if name.endswith("s") else f"{name}s"
+def _counted(count: int, name: str) -> str:
+    return f"{count} {name}" if count == 1 or name.endswith("s") else f"{count} {name}s"
+
+
+def _open_upwards(jointed: Jointed, marks: Sequence[str]) -> bool:
+    edges = {slot.edge for mark in marks for slot in jointed.cuts[mark].slots}
+    return edges == {Edge.UPPER}
 
 
 def _listed(marks: Sequence[str]) -> str:

@@ -203,8 +203,6 @@ def first_guess(grid: FlatGrid, opening: float) -> Floats:
     SettingError
         For strips that close around a hole: they cannot lie flat in one piece.
     """
-    if not len(grid.crossed):
-        return _from_above(grid)
     ways = _ways(grid)
     if ways is None:
         return _from_above(grid)

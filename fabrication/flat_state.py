@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -207,7 +208,7 @@ def _opening(grid: FlatGrid, opening: float | None) -> float:
         raise SettingError(
             "The opening of a flat segment is the mean angle of its nodes",
             where="opening",
-            value=f"{np.degrees(opening):g} degrees",
+            value=f"{degrees(opening):g} degrees",
             limit="between 0 and 180 degrees",
             advice="the design's node angle",
         )

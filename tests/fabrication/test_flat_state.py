@@ -213,6 +213,13 @@ def test_a_segment_is_chosen_by_marks(catenoid):
     assert [strip.mark for strip in state.strips] == ["A1", "A2", "B1", "B2"]
 
 
+def test_one_strip_alone_lies_straight(catenoid):
+    state = lay_flat(LOOSE.build(catenoid.structure), lamellas=["A2"])
+    assert state.size == pytest.approx((catenoid.lamella("A2").length + 2.5, 2.5), abs=0.01)
+    assert np.isnan(state.angles).all()
+    assert state.section()["angle_deg"] == {"min": None, "mean": None, "max": None}
+
+
 @pytest.mark.parametrize(
     ("marks", "word"),
     [(["A1", "Z9"], "Z9"), ([], "No strip"), (["A1", "A2"], "hang together")],
