@@ -166,7 +166,7 @@ def _folds(grid: FlatGrid, angles: Floats) -> Iterator[Finding]:
             angle,
             0.0,
             "degrees",
-            f"The flat segment folds over itself at {name} and {len(folded) - 1} more nodes. "
+            f"The flat segment folds over itself at {name}{_more(len(folded))}. "
             "Open it to a larger mean angle, or choose a smaller segment.",
         )
 
@@ -182,7 +182,6 @@ def _angles(grid: FlatGrid, angles: Floats, widths: Floats, thickness: float) ->
     acute = float(np.degrees(min(angle, np.pi - angle)))
     narrow = float(np.nanmin(widths[worst]))
     limit = float(np.degrees(2.0 * np.arctan2(thickness, narrow)))
-    others = f" and {len(tight) - 1} more nodes" if len(tight) > 1 else ""
     yield Finding(
         "flat-angle",
         Severity.WARNING,
@@ -191,10 +190,15 @@ def _angles(grid: FlatGrid, angles: Floats, widths: Floats, thickness: float) ->
         limit,
         "degrees",
         f"On the ground the strips cross at {acute:.1f} degrees at {name}; its slot of "
-        f"{narrow:.2f} mm lets {limit:.1f} pass. The slots of {name}{others} are too tight: "
+        f"{narrow:.2f} mm lets {limit:.1f} pass. The slots of {name}{_more(len(tight))} are too tight: "
         f"use {np.ceil(float(short[worst]) * 100.0) / 100.0:.2f} mm more clearance, loose slots, "
         "or a smaller segment.",
     )
+
+
+def _more(count: int) -> str:
+    """How many besides the one that is named."""
+    return "" if count < 2 else f" and {count - 1} more {'node' if count == 2 else 'nodes'}"
 
 
 def _singular(grid: FlatGrid) -> Iterator[Finding]:
