@@ -191,8 +191,8 @@ def _angles(grid: FlatGrid, angles: Floats, widths: Floats, thickness: float) ->
         "degrees",
         f"On the ground the strips cross at {acute:.1f} degrees at {name}; its slot of "
         f"{narrow:.2f} mm lets {limit:.1f} pass. The slots of {name}{_more(len(tight))} are too "
-        f"tight: use {np.ceil(float(short[worst]) * 100.0) / 100.0:.2f} mm more clearance, loose slots, "
-        "or a smaller segment.",
+        f"tight: use {np.ceil(float(short[worst]) * 100.0) / 100.0:.2f} mm more clearance, loose "
+        "slots, or a smaller segment.",
     )
 
 

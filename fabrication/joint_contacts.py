@@ -94,17 +94,25 @@ def _bearings(jointed: Jointed, laps: Sequence[Lap]) -> tuple[tuple[Bearing, ...
 
 
 def _ends(jointed: Jointed) -> dict[str, set[int]]:
-    """Strips that end short of a node, by its name."""
-    numbers = {lamella.mark: i for i, lamella in enumerate(jointed.strips.lamellas)}
+    """Strips that end short of a node, by its name.
+
+    Where the node knows the strip's station, that decides; else a fixture of the strip's end.
+    """
     ends: dict[str, set[int]] = defaultdict(set)
-    for fixture in jointed.fixtures:
-        if fixture.feature in (Feature.START, Feature.END):
-            ends[fixture.node].add(numbers[fixture.mark])
+    known: set[tuple[str, int]] = set()
     for node in jointed.strips.nodes:
         for crossing in node.crossings:
+            known.add((node.name, crossing.lamella))
             strip = jointed.strips.lamellas[crossing.lamella]
             if not (strip.closed or strip.start < crossing.station < strip.end):
                 ends[node.name].add(crossing.lamella)
+    numbers = {lamella.mark: i for i, lamella in enumerate(jointed.strips.lamellas)}
+    for fixture in jointed.fixtures:
+        number = numbers.get(fixture.mark)
+        if fixture.feature not in (Feature.START, Feature.END) or number is None:
+            continue
+        if (fixture.node, number) not in known:
+            ends[fixture.node].add(number)
     return ends
 
 

@@ -15,7 +15,7 @@ from fabrication.arrangement import Lane, arranged
 from fabrication.assembling import Assembly, AssemblyStep, Side, assembly_order
 from fabrication.cut import Cuts, Edge
 from fabrication.errors import OutputError
-from fabrication.jointed import Jointed
+from fabrication.jointed import Feature, Fixture, Jointed
 from fabrication.lamella import piece_of
 from fabrication.node import Crossing
 from fabrication.outlines import Frame
@@ -194,6 +194,26 @@ def test_pieces_go_in_after_the_strips_they_end_on(catenoid):
     last_through = max(k for k, mark in enumerate(order) if mark.startswith("A"))
     assert all(mark.startswith("A") for mark in order[: last_through + 1])
     assert {len(step.marks) for step in assembly.steps if step.marks[0].startswith("B")} == {4}
+
+
+def test_pieces_known_by_their_ends_alone_go_in_after_the_strips_they_end_on(catenoid):
+    """Nodes with the through strip only; the pieces are there by what their ends are fixed to."""
+    whole = in_pieces(catenoid.structure, lambda family, a, b: family == 2)
+    ends = []
+    nodes = []
+    for node in whole.strips.nodes:
+        through = []
+        for crossing in node.crossings:
+            strip = whole.strips.lamellas[crossing.lamella]
+            if strip.start < crossing.station < strip.end:
+                through.append(crossing)
+                continue
+            first = crossing.station < strip.start
+            feature, x = (Feature.START, 0.0) if first else (Feature.END, strip.length)
+            ends.append(Fixture(strip.mark, node.name, feature, x, 50.0, node.position))
+        nodes.append(replace(node, crossings=tuple(through)))
+    jointed = replace(whole, strips=replace(whole.strips, nodes=tuple(nodes)), fixtures=tuple(ends))
+    assert assembly_order(jointed).lines() == assembly_order(whole).lines()
 
 
 def test_pinwheels_close_in_rings_that_are_told(catenoid):
