@@ -1,5 +1,8 @@
 """Public names of fabrication, each by the module that holds it."""
 
+from .assembling import Assembly as Assembly
+from .assembling import AssemblyStep as AssemblyStep
+from .assembling import assembly_order as assembly_order
 from .beam_layout import Beam as Beam
 from .beam_layout import BeamEnd as BeamEnd
 from .beam_layout import BeamSection as BeamSection
@@ -14,9 +17,11 @@ from .connector import connector_groups as connector_groups
 from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
 from .cut import Relief as Relief
+from .export.assembly_schedule import write_assembly as write_assembly
 from .export.bay_schedule import write_bay_schedule as write_bay_schedule
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
+from .export.flat_schedule import write_flat_state as write_flat_state
 from .export.report import write_report as write_report
 from .export.schedule import write_bill as write_bill
 from .export.schedule import write_schedule as write_schedule
@@ -32,6 +37,10 @@ from .finding import Finding as Finding
 from .finding import Severity as Severity
 from .fitting import Fit as Fit
 from .fitting import fit as fit
+from .flat_checks import Ground as Ground
+from .flat_state import FlatState as FlatState
+from .flat_state import lay_flat as lay_flat
+from .flat_strips import FlatStrip as FlatStrip
 from .grouping import Group as Group
 from .grouping import Member as Member
 from .grouping import instance_frame as instance_frame
