@@ -20,7 +20,7 @@ from typing import Any, Protocol
 
 from fabrication.errors import KernelError
 from fabrication.parts import FlatPart
-from fabrication.shapes import Bodies
+from fabrication.shapes import Bodies, Prisms, joined
 from fabrication.structures import Structure
 from gridshell import GridshellError
 
@@ -37,33 +37,36 @@ class Work(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class LamellaWork:
-    """The bent and twisted strips of a structure, in an assembly called *name*.
+    """The bent and twisted strips with their connectors, in an assembly called *name*.
 
     *more* bodies, of a facade, are written beside it, by *beside*'s name.
     """
 
-    structure: Structure
+    strips: Structure
     parts: Sequence[FlatPart]
     name: str
+    connectors: Sequence[Prisms] = ()
     more: Bodies | None = None
     beside: str = ""
 
     def do(self, step: Path, lap: Lap) -> tuple[Any, ...]:
-        """See :class:`Work`; returns ``StepPart``s, and then ``StepPrism``s of *more*."""
-        from fabrication.export.step import assembly, write_step
+        """See :class:`Work`; ``StepPart``s, then ``StepPrism``s of connectors and of *more*."""
+        from fabrication.export.step_bodies import strip_kinds, write_assembly
+        from fabrication.export.step_prism_reader import read_prisms
         from fabrication.export.step_reader import read_step
         from fabrication.solid import solids
 
-        bodies = solids(self.structure, self.parts)
+        kinds = strip_kinds(self.strips, solids(self.strips, self.parts))
         lap("solids")
-        write_step(assembly(bodies, self.structure, name=self.name), step)
+        write_assembly(step, name=self.name, strips=kinds, bodies=joined(*self.connectors))
         lap("STEP")
         found = read_step(step)
+        placed = read_prisms(step) if self.connectors else ()
         lap("STEP read back")
         if self.more is None:
-            return found
+            return (*found, *placed)
         other = BodiesWork(self.more, self.name).do(step.with_name(self.beside), lap)
-        return (*found, *other)
+        return (*found, *placed, *other)
 
 
 @dataclass(frozen=True, eq=False)

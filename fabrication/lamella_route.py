@@ -70,7 +70,7 @@ class LamellaRoute:
         """Lamellas along one of the two diagonal meshes."""
         profile = profile_of(self.profile)
         with clock.stage("structure"):
-            skin = gs.diagonal_meshes(control)[0 if self.project.net.skin == "D1" else 1]
+            skin = self.skin(control)
             jointed = self._jointed(skin, profile)
         with clock.stage("parts"):
             parts = parts_of(jointed)
@@ -81,8 +81,11 @@ class LamellaRoute:
 
     def rebuilt(self, control: gs.ControlMesh) -> Jointed:
         """The strips and their fixtures anew, on a net that was read back."""
-        skin = gs.diagonal_meshes(control)[0 if self.project.net.skin == "D1" else 1]
-        return self._jointed(skin, profile_of(self.profile))
+        return self._jointed(self.skin(control), profile_of(self.profile))
+
+    def skin(self, control: gs.ControlMesh) -> gs.DiagonalMesh:
+        """The diagonal mesh along whose edges lamellas run."""
+        return gs.diagonal_meshes(control)[0 if self.project.net.skin == "D1" else 1]
 
     def _jointed(self, skin: gs.DiagonalMesh, profile: Profile) -> Jointed:
         design = structure(skin, profile, overhang=self.profile.overhang)
@@ -121,7 +124,7 @@ class LamellaSystem:
 
         name, material = self.project.name, self.jointed.design.profile.material
         facade = self.facade
-        work = LamellaWork(self.jointed.strips, self.parts, name)
+        work = LamellaWork(self.jointed.strips, self.parts, name, self.jointed.connectors)
         if facade is not None:
             work = replace(work, more=facade.bodies, beside=STEP_FILE)
         cad.order(work, draft / "structure.step")
@@ -136,15 +139,16 @@ class LamellaSystem:
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):
-            skins = gs.diagonal_meshes(gs.read_net(draft / "net.json"))
-            net = skins[0 if self.project.net.skin == "D1" else 1]
+            control = gs.read_net(draft / "net.json")
+            reference = self.route.rebuilt(control)
             strips = [part for part in solid.parts if isinstance(part, StepPart)]
-            closed = asdict(compare(self.jointed.strips, self.parts, net, drawn, strips))
+            prisms = [part for part in solid.parts if isinstance(part, StepPrism)]
+            closed = asdict(compare(reference, self.parts, drawn, strips, prisms))
             findings = lamella_loop_findings(closed, fitted)
             more: Report = {}
             if facade is not None:
-                prisms = [part for part in solid.parts if isinstance(part, StepPrism)]
-                glazed = facade.closure(net, self.jointed.design, panels, prisms)
+                net = self.route.skin(control)
+                glazed = facade.closure(net, reference.design, panels, prisms)
                 more = {"facade": facade.figures(glazed)}
                 findings += facade_findings(glazed)
         return Written(

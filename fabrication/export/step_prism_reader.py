@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -103,7 +104,7 @@ class _Model:
         for number in self.kind.get(b"NEXT_ASSEMBLY_USAGE_OCCURRENCE", []):
             product = self._refs(number)[1]
             solid = self._solid(shapes[product])
-            if solid is None:
+            if solid is None or self._bent(solid):
                 continue
             if product not in ends:
                 ends[product] = self._ends(solid)
@@ -149,9 +150,18 @@ class _Model:
         solids = set(self.kind.get(b"MANIFOLD_SOLID_BREP", []))
         return next((n for n in self._refs(representation) if n in solids), None)
 
+    def _bent(self, solid: int) -> bool:
+        """Whether it has a spline face: a strip, which is no prism."""
+        faces = self._refs(self._refs(solid)[0])
+        return not self._splines.isdisjoint(self._refs(face)[-1] for face in faces)
+
+    @cached_property
+    def _splines(self) -> frozenset[int]:
+        return frozenset(self.kind.get(b"B_SPLINE_SURFACE_WITH_KNOTS", []))
+
     def _ends(self, solid: int) -> tuple[Points, Points]:
         """The corners of the faces at the lowest and the highest z of the solid's coordinates."""
-        loops = [self._loop(face) for face in self._refs(self._refs(solid)[0])]
+        loops = [self._outer_loop(face) for face in self._refs(self._refs(solid)[0])]
         z = np.concatenate([loop[:, 2] for loop in loops])
         low = [loop for loop in loops if (np.abs(loop[:, 2] - z.min()) < _LEVEL).all()]
         high = [loop for loop in loops if (np.abs(loop[:, 2] - z.max()) < _LEVEL).all()]
@@ -159,9 +169,13 @@ class _Model:
             raise ValueError(f"#{solid} is no prism")
         return low[0], high[0]
 
-    def _loop(self, face: int) -> Points:
-        """(k, 3) corners of the one loop of a face."""
-        bound = self._refs(face)[0]
+    def _outer_loop(self, face: int) -> Points:
+        """(k, 3) corners of the largest loop of a face; the others are openings."""
+        loops = [self._loop(bound) for bound in self._refs(face)[:-1]]
+        return max(loops, key=lambda loop: float(np.ptp(loop, axis=0).max()))
+
+    def _loop(self, bound: int) -> Points:
+        """(k, 3) corners of a loop."""
         corners = []
         for oriented in self._refs(self._refs(bound)[0]):
             edge = self._refs(oriented)[0]

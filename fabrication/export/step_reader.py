@@ -7,7 +7,7 @@ large ruled faces of each solid, and the corners of the loop that trims them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import BSpline, CubicHermiteSpline
 
+from fabrication.export.step_loops import quadrature, read_loops, segments
 from gridshell import FileError
 from gridshell.arrays import Floats
 
@@ -71,13 +72,19 @@ class StepPart:
     ----------
     mark : the product's name.
     near, far : the two large faces, with common parameters.
-    loop : (k, 2) parameters of the corners of the near face's trimming loop.
+    near_loops, far_loops : the loops that trim them, rows u, v, bulge; the outer one first.
     """
 
     mark: str
     near: RuledSide
     far: RuledSide
-    loop: Floats
+    near_loops: tuple[Floats, ...]
+    far_loops: tuple[Floats, ...]
+
+    @property
+    def loop(self) -> Floats:
+        """(k, 2) corners of the near face's outer loop."""
+        return self.near_loops[0][:, :2]
 
     @cached_property
     def middle(self) -> RuledSide:
@@ -93,13 +100,46 @@ class StepPart:
         """
         return self.middle.points(self._arc(inverse=True)(x), y)
 
-    def unrolled_loop(self) -> Floats:
-        """(k, 2) the trimming loop on the flat strip: arc length along the middle line, v."""
-        return np.stack([self._arc(inverse=False)(self.loop[:, 0]), self.loop[:, 1]], axis=1)
+    def unrolled_loop(self, loop: Floats | None = None) -> Floats:
+        """A trimming loop (k, 2) or (k, 3) on the flat strip; the near face's if none is given.
+
+        u becomes arc length along the middle line; v, and bulges, stay what they are.
+        """
+        rows = np.array(self.loop if loop is None else loop)
+        rows[:, 0] = self._arc(inverse=False)(rows[:, 0])
+        return rows
+
+    def circles(self) -> Floats:
+        """(m, 3) rows x, y, diameter of the holes on the flat strip, in order of x."""
+        rows = [
+            [*self.unrolled_loop(loop)[:, :2].mean(axis=0), np.ptp(loop[:, 0])]
+            for loop in self.near_loops[1:]
+        ]
+        return np.array(sorted(rows)).reshape(-1, 3)
 
     def volume(self) -> float:
-        """Volume between the faces over the loop, by Gauss quadrature, mm3."""
-        u, v, weight = _comb_quadrature(self.loop, np.unique(self.near.lower.t))
+        """Volume between the faces, by Gauss quadrature, mm3.
+
+        Circular segments between arcs and their chords, holes among them, are taken with what lies
+        over the middle of their chord; at bevelled ends with the mean of both faces' loops.
+        """
+        near, far = self.near_loops, self.far_loops
+        if any(len(a) != len(b) for a, b in zip(near, far, strict=True)):
+            raise FileError("The two large faces of a solid have other corners", where=self.mark)
+        square = np.allclose(near[0][:, 0].min(), far[0][:, 0].min(), atol=1e-6) and np.allclose(
+            near[0][:, 0].max(), far[0][:, 0].max(), atol=1e-6
+        )
+        sides = (near,) if square else (near, far)
+        return float(np.mean([abs(self._over(loops)) for loops in sides]))
+
+    def _over(self, loops: Sequence[Floats]) -> float:
+        """Volume between the faces over the loops of one of them."""
+        knots = np.unique(self.near.lower.t)
+        u, v, weight = quadrature(loops[0], knots)
+        for loop in loops:
+            middle, areas = segments(loop)
+            u, v = np.r_[u, middle[:, 0]], np.r_[v, middle[:, 1]]
+            weight = np.r_[weight, areas]
         total = 0.0
         for share, part in zip((leggauss(3)[0] + 1.0) / 2.0, leggauss(3)[1] / 2.0, strict=True):
             a, b = self.near.slopes(u, v), self.far.slopes(u, v)
@@ -107,7 +147,7 @@ class StepPart:
             across = self.far.points(u, v) - self.near.points(u, v)
             density = np.einsum("nc,nc->n", np.cross(by_u, by_v), across)
             total += part * float(density @ weight)
-        return abs(total)
+        return total
 
     def _arc(self, *, inverse: bool) -> CubicHermiteSpline:
         """Arc length of the middle line by parameter, or the other way round."""
@@ -144,7 +184,11 @@ def read_step(path: Path | str) -> tuple[StepPart, ...]:
     reader = STEPControl_Reader()
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
         raise FileError("The STEP file cannot be read", where=str(path))
-    return tuple(_part(path, name, brep) for name, brep in _named_solids(reader.StepModel()))
+    found = [_part(path, name, brep) for name, brep in _named_solids(reader.StepModel())]
+    parts = tuple(part for part in found if part is not None)
+    if found and not parts:
+        raise FileError("No solid has two large ruled faces", where=str(path))
+    return parts
 
 
 def _named_solids(model: Any) -> Iterator[tuple[str, Any]]:
@@ -163,7 +207,8 @@ def _named_solids(model: Any) -> Iterator[tuple[str, Any]]:
                 yield name, item
 
 
-def _part(path: Path | str, name: str, brep: Any) -> StepPart:
+def _part(path: Path | str, name: str, brep: Any) -> StepPart | None:
+    """The lamella that a solid is; None for a connector, which has no spline face at all."""
     from OCP.StepGeom import StepGeom_BSplineSurfaceWithKnots
 
     shell = brep.Outer()
@@ -173,12 +218,18 @@ def _part(path: Path | str, name: str, brep: Any) -> StepPart:
         if isinstance(surface, StepGeom_BSplineSurfaceWithKnots) and surface.VDegree() == 1:
             candidates.append((_extent(surface), surface, face))
     candidates.sort(key=lambda candidate: candidate[0], reverse=True)
+    if not candidates:
+        return None
     if len(candidates) < 2:
         raise FileError("A solid has no two large ruled faces", where=f"{path}, {name}")
     near, far = (_ruled(surface) for _, surface, _ in candidates[:2])
     if not np.array_equal(near.lower.t, far.lower.t):
         raise FileError("The two large faces of a solid differ", where=f"{path}, {name}")
-    return StepPart(name, near, far, near.parameters(_loop_corners(candidates[0][2])))
+    loops = [
+        read_loops(face, side.parameters)
+        for side, (_, _, face) in zip((near, far), candidates[:2], strict=True)
+    ]
+    return StepPart(name, near, far, loops[0], loops[1])
 
 
 def _extent(surface: Any) -> float:
@@ -206,46 +257,5 @@ def _ruled(surface: Any) -> RuledSide:
     return RuledSide(edges[0], edges[1], v[-1] - v[0])
 
 
-def _loop_corners(face: Any) -> Floats:
-    loop = face.BoundsValue(1).Bound()
-    corners = []
-    for i in range(1, loop.NbEdgeList() + 1):
-        oriented = loop.EdgeListValue(i)
-        edge = oriented.EdgeElement()
-        vertex = edge.EdgeStart() if oriented.Orientation() else edge.EdgeEnd()
-        corners.append(_xyz(vertex.VertexGeometry()))
-    return np.array(corners)
-
-
 def _xyz(point: Any) -> list[float]:
     return [point.CoordinatesValue(i) for i in (1, 2, 3)]
-
-
-def _comb_quadrature(loop: Floats, knots: Floats) -> tuple[Floats, Floats, Floats]:
-    """Gauss points and weights over an axis-parallel loop, column by column.
-
-    Columns end where the loop turns and at the knots of the faces; inside a column the loop is a
-    set of intervals of v.
-    """
-    following = np.roll(loop, -1, axis=0)
-    flat = np.abs(following[:, 1] - loop[:, 1]) < np.abs(following[:, 0] - loop[:, 0])
-    low, high = np.sort(np.stack([loop[flat, 0], following[flat, 0]]), axis=0)
-    level = (loop[flat, 1] + following[flat, 1]) / 2.0
-    inside = knots[(knots > loop[:, 0].min()) & (knots < loop[:, 0].max())]
-    stops = np.unique(np.r_[loop[:, 0], inside])
-    middle = (stops[:-1] + stops[1:])[:, None] / 2.0
-    crossed = np.sort(np.where((low < middle) & (high > middle), level, np.inf), axis=1)
-    column, interval = np.nonzero(np.isfinite(crossed[:, 1::2]))
-    nodes, weights = leggauss(4)
-    half_u = np.diff(stops)[column] / 2.0
-    bottom, top = crossed[column, 2 * interval], crossed[column, 2 * interval + 1]
-    half_v = (top - bottom) / 2.0
-    u = middle[column] + half_u[:, None] * nodes
-    v = (bottom + half_v)[:, None] + half_v[:, None] * nodes
-    weight = (half_u * half_v)[:, None, None] * np.outer(weights, weights)
-    shape = weight.shape
-    return (
-        np.broadcast_to(u[:, :, None], shape).ravel(),
-        np.broadcast_to(v[:, None, :], shape).ravel(),
-        weight.ravel(),
-    )

@@ -27,13 +27,8 @@ def four(pair, files):
 
 
 def closed(design, files, *, sheets=None, step=None, net=None):
-    return fab.closure(
-        design.structure,
-        design.parts,
-        net or files.net,
-        sheets or files.sheets,
-        step or files.step,
-    )
+    reference = fab.SlotJoint().build(fab.structure(net or files.net, design.structure.profile))
+    return fab.closure(reference, design.parts, sheets or files.sheets, step or files.step)
 
 
 def on_sheets(parts, folder):

@@ -91,7 +91,7 @@ def test_x_is_measured_along_the_strip_whatever_the_parameters_are(case):
         part,
         near=stretched(part.near, 2.5),
         far=stretched(part.far, 2.5),
-        loop=part.loop * np.array([2.5, 1.0]),
+        near_loops=tuple(loop * np.array([2.5, 1.0, 1.0]) for loop in part.near_loops),
     )
     x, y = np.linspace(0.0, 900.0, 9), np.linspace(0.0, 100.0, 9)
     np.testing.assert_allclose(other.place(x, y), part.place(x, y), atol=1e-6)
@@ -139,7 +139,7 @@ def exported(shape, path):
 
 def test_a_solid_with_plane_faces_is_refused_by_name(tmp_path):
     box = cadquery.Workplane().box(1.0, 2.0, 3.0)
-    with pytest.raises(gs.FileError, match="no two large ruled faces") as info:
+    with pytest.raises(gs.FileError, match="No solid has two large ruled faces") as info:
         fab.read_step(exported(box, tmp_path / "box.step"))
     assert "A1" in info.value.where
 
