@@ -23,6 +23,7 @@ from OCP.Message import Message
 
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
+from fabrication.export.step_text import compact
 from fabrication.structures import Structure
 
 PLACEHOLDER = "@whole@"
@@ -110,7 +111,7 @@ def _signed(content: bytes, name: str, file: str, description: str, written: dat
 
     data = data.replace(f"'{PLACEHOLDER}'".encode(), step_string(name).encode())
     data = _OCCURRENCE.sub(renumbered, data)
-    return "\n".join(header).encode() + data
+    return "\n".join(header).encode() + compact(data)
 
 
 def step_string(text: str) -> str:
