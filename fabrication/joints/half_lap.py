@@ -118,7 +118,7 @@ def slot_findings(strips: Structure) -> tuple[Finding, ...]:
 
 def slot_widths(strips: Structure, nodes: Sequence[Node], lap: HalfLap) -> Floats:
     """(n, 2) drawn widths of the slots in family 1 and in family 2 at regular *nodes*, mm."""
-    tangents, twists = _at_nodes(strips, nodes)
+    tangents, twists = at_nodes(strips, nodes)
     axes = np.array([node.axis for node in nodes]).reshape(-1, 3)
     across = np.einsum("nc,nc->n", np.cross(tangents[:, 0], tangents[:, 1]), axes)
     angle = np.arctan2(across, np.einsum("nc,nc->n", tangents[:, 0], tangents[:, 1]))
@@ -173,7 +173,7 @@ def slot_width(
     return np.asarray((partner_part + own_part) / np.abs(np.sin(angle - d1 + d2)))
 
 
-def _at_nodes(structure: Structure, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
+def at_nodes(structure: Structure, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
     """(n, 2, 3) tangents and (n, 2) rates of twist of both families at regular *nodes*."""
     tangents, twists = np.zeros((len(nodes), 2, 3)), np.zeros((len(nodes), 2))
     rows: dict[int, list[tuple[int, float]]] = {}
