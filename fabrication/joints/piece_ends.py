@@ -24,7 +24,8 @@ from fabrication.lamella import Lamella, station_of
 from fabrication.node import Node
 from fabrication.structures import Structure
 from gridshell import SettingError
-from gridshell.arrays import Floats, Indices, Mask
+from gridshell.arrays import Floats, Indices, Mask, unit
+from gridshell.mesh.parity import alternating_labels
 
 _HEIGHTS = 17
 
@@ -106,7 +107,7 @@ def piece_ends(design: Structure, made: Sequence[Span], *, square: bool) -> Ends
     axes = np.array([one.axis for one in nodes]).reshape(-1, 3)
     across = np.einsum("nc,nc->n", np.cross(through, mine), axes)
     angle = np.arctan2(across, np.einsum("nc,nc->n", through, mine))
-    outwards: Floats = 1.0 - 2.0 * side
+    outwards = np.where(side == 0, 1.0, -1.0)
     turning = np.stack([twists[row, own], twists[row, 1 - own]], axis=1)
     half = design.profile.width / 2.0
     near, far = (
@@ -172,23 +173,12 @@ def through_families(design: Structure, through: int, *, pinwheel: bool) -> Indi
 
 def _checkerboard(design: Structure) -> Indices:
     """(n,) 0 or 1, different at any two neighbours along a lamella."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import breadth_first_order, connected_components
-
     bays = [
         np.stack([lamella.nodes, np.roll(lamella.nodes, -1)])[:, : None if lamella.closed else -1]
         for lamella in design.lamellas
     ]
     a, b = np.concatenate(bays, axis=1)
-    count = len(design.nodes)
-    graph = coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)).tocsr()
-    parts, part = connected_components(graph, directed=False)
-    colour = np.zeros(count, dtype=np.int64)
-    for number in range(parts):
-        root = int(np.argmax(part == number))
-        order, before = breadth_first_order(graph, root, directed=False)
-        for node in order[1:].tolist():
-            colour[node] = 1 - colour[before[node]]
+    colour = alternating_labels(len(design.nodes), a, b, np.ones(len(a), dtype=bool))
     wrong = np.flatnonzero(colour[a] == colour[b])
     if len(wrong):
         first, second = (design.nodes[int(side[wrong[0]])].name for side in (a, b))
@@ -269,8 +259,5 @@ def _cut_place(
     )
     weak, strong = (float(k[0]) for k in carrier.bending(np.array([station])))
     bent = (weak * across + strong * node.axis) * away**2 / 2.0
-    turn = float(ends.twists[row, 0]) * forwards * away
-    return (
-        node.position + away * out + bent,
-        np.cos(turn) * node.axis + np.sin(turn) * across,
-    )
+    turn = float(ends.twists[row, 0]) * forwards * across - strong * out
+    return node.position + away * out + bent, unit(node.axis + away * turn)
