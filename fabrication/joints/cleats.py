@@ -159,7 +159,7 @@ def _play(cleat: Cleat, design: Structure, number: int) -> Iterator[Finding]:
             cleat.play,
             needed,
             "mm",
-            f"The strips at {node.name} bend and twist by {needed:.2f} mm along a cleat, whose "
+            f"The strips at {node.name} bend and twist by {needed:.3f} mm along a cleat, whose "
             f"play is {cleat.play:g} mm. Use a play of {np.ceil(needed * 10.0) / 10.0:g} mm, or "
             "shorter legs or less height.",
         )

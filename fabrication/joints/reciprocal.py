@@ -168,7 +168,7 @@ class ReciprocalJoint(Joint):
                     piece.length,
                     shortest,
                     "mm",
-                    f"{piece.mark} is {piece.length:.0f} mm long; pieces below {shortest:g} mm are "
+                    f"{piece.mark} is {piece.length:.1f} mm long; pieces below {shortest:g} mm are "
                     "hard to hold and to weld. Use fewer lamellas, or let the other family run "
                     "through.",
                 )

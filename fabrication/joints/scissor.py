@@ -110,7 +110,7 @@ class ScissorJoint(Joint):
 
     def _loose(self, plays: Mapping[str, AnglePlay]) -> Finding:
         name, worst = max(plays.items(), key=lambda item: item[1].sharper)
-        play, limit = np.degrees(worst.sharper), float(np.degrees(self.control))
+        play, limit = float(np.degrees(worst.sharper)), float(np.degrees(self.control))
         loose = sum(one.sharper > self.control for one in plays.values())
         held = f"The slots let {name} close by {play:.1f} degrees more than built"
         if not loose:
@@ -121,7 +121,7 @@ class ScissorJoint(Joint):
             "angle-play",
             Severity.WARNING,
             name,
-            float(play),
+            play,
             limit,
             "degrees",
             f"{held}; {loose} of {len(plays)} nodes by more than {limit:g}: the slots do not "

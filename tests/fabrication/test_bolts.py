@@ -24,7 +24,7 @@ def placed():
         Frame(np.array([100.0 * i, 0.0, 10.0]), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
         for i in range(3)
     ]
-    grips = np.array([100.0, 108.0, 101.0])
+    grips = np.array([100.0, 108.0, 100.2])
     lengths = [bolt_length(float(g), 8.0) for g in grips]
     return grips, lengths, bolt_bodies(["N1", "N2", "N3"], frames, grips, lengths, 8.0)
 
