@@ -49,10 +49,15 @@ from .jointed import Feature as Feature
 from .jointed import Fixture as Fixture
 from .jointed import Jointed as Jointed
 from .joints import JOINTS as JOINTS
+from .joints import AnglePlay as AnglePlay
+from .joints import Cleat as Cleat
 from .joints import DoubleSlotJoint as DoubleSlotJoint
 from .joints import Joint as Joint
+from .joints import ReciprocalJoint as ReciprocalJoint
+from .joints import ScissorJoint as ScissorJoint
 from .joints import SlotJoint as SlotJoint
 from .joints import StarWasher as StarWasher
+from .joints import angle_play as angle_play
 from .lamella import Lamella as Lamella
 from .loop import Closure as Closure
 from .loop import closure as closure

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from fabrication.lamella import Lamella, curve_beside
 from fabrication.node import Crossing, Node
@@ -78,7 +78,7 @@ def arranged(
     chosen: list[Lane] = []
     for number, lamella in enumerate(design.lamellas):
         for lane in lanes[lamella.family]:
-            strips.append(_strip(lamella, lane))
+            strips.append(_strip(lamella, lane, _cut_back(design, lamella, lane)))
             carriers.append(number)
             chosen.append(lane)
     beside: dict[int, list[int]] = {}
@@ -93,7 +93,17 @@ def arranged(
     return Arrangement(built, tuple(carriers), tuple(chosen), miss)
 
 
-def _strip(lamella: Lamella, lane: Lane) -> Lamella:
+def _cut_back(design: Structure, lamella: Lamella, lane: Lane) -> tuple[float, float]:
+    """How much shorter a strip is than its axis at singular nodes, where neighbours meet, mm."""
+    back = [0.0, 0.0]
+    for side, short in enumerate((lamella.start > 0.0, lamella.end < lamella.stations[-1])):
+        count = len(design.nodes[int(lamella.nodes[-side])].crossings)
+        if short and count > 2 and not lamella.closed:
+            back[side] = abs(lane.across) / float(np.tan(np.pi / count))
+    return back[0], back[1]
+
+
+def _strip(lamella: Lamella, lane: Lane, back: tuple[float, float]) -> Lamella:
     if lane.across == 0.0 and lane.along == 0.0:
         return replace(lamella, mark=lamella.mark + lane.suffix)
     curve, stations = curve_beside(lamella, across=lane.across, along=lane.along)
@@ -107,7 +117,7 @@ def _strip(lamella: Lamella, lane: Lane) -> Lamella:
         start = end + gap - curve.length
     else:
         normals = CubicSpline(stations(held), lamella.normals(held))
-        start, end = (float(stations(s)) for s in (lamella.start, lamella.end))
+        start, end = (float(stations(s)) for s in (lamella.start + back[0], lamella.end - back[1]))
     return Lamella(
         mark=lamella.mark + lane.suffix,
         family=lamella.family,
@@ -222,8 +232,7 @@ def _turned(
     """The strips with their widths along the axes of their crossings.
 
     The crossings a strip has at one node of the design are a few centimetres apart; the strip
-    takes their mean axis at their mean station, so that its twist does not amplify what they
-    differ by.
+    takes their mean axis at their mean station, and turns there as fast as their axes do.
     """
     turned = list(strips)
     for index, s in zip(pair, stations, strict=True):
@@ -236,15 +245,29 @@ def _turned(
             np.add.at(at, nearest, s[here])
             np.add.at(value, nearest, axes[here])
             x, y = at[held] / count[held], unit(value[held])
-            turned[number] = replace(strip, normals=_spline(strip, x, y))
+            place = np.searchsorted(held, nearest)
+            away = s[here] - x[place]
+            moment, spread = np.zeros_like(y), np.zeros(len(held))
+            np.add.at(moment, place, away[:, None] * axes[here])
+            np.add.at(spread, place, away**2)
+            turned[number] = replace(strip, normals=_spline(strip, x, y, moment, spread))
     return turned
 
 
-def _spline(strip: Lamella, x: Floats, y: Vectors) -> CubicSpline:
+def _spline(strip: Lamella, x: Floats, y: Vectors, moment: Vectors, spread: Floats) -> CubicSpline:
+    """Normals *y* at stations *x*, with the slope moment / spread where two axes give one."""
+    if len(x) == 1:
+        return strip.normals
+    boundary = "not-a-knot"
     if strip.closed:
+        boundary = "periodic"
         x, y = np.r_[x, x[0] + strip.axis.length], np.vstack([y, y[:1]])
-        return CubicSpline(x, y, bc_type="periodic")
-    return CubicSpline(x, y) if len(x) > 1 else strip.normals
+        moment, spread = np.vstack([moment, moment[:1]]), np.r_[spread, spread[:1]]
+    smooth = CubicSpline(x, y, bc_type=boundary)
+    known = spread > 0.0
+    slope = np.where(known[:, None], moment / np.where(known, spread, 1.0)[:, None], smooth(x, 1))
+    held = CubicHermiteSpline(x, y, slope)
+    return CubicSpline.construct_fast(held.c, held.x, smooth.extrapolate, smooth.axis)
 
 
 def _angles(first: Vectors, second: Vectors, axes: Vectors) -> Floats:

@@ -214,21 +214,32 @@ def piece_of(
     Parameters
     ----------
     nodes : number of the first and of the last node it keeps along the lamella; it may end short
-        of either.
-    start, end : its cut ends, stations of *lamella*, mm.
+        of either. On a closed lamella of k nodes the last may be k or more: the piece then goes
+        on over the first node, whose number is k the second time round.
+    start, end : its cut ends, stations of *lamella*, mm; beyond its length likewise.
     """
     first, last = nodes
-    stations = lamella.stations[first : last + 1]
+    numbers = np.arange(first, last + 1)
+    stations = station_of(lamella, numbers)
     origin = float(stations[0])
     return Lamella(
         mark=mark,
         family=lamella.family,
-        nodes=lamella.nodes[first : last + 1],
+        nodes=lamella.nodes[numbers % len(lamella.nodes)],
         axis=AxisCurve(_moved(lamella.axis.spline, -origin), frozen(stations - origin), False),
         normals=_moved(lamella.normals, -origin),
         start=start - origin,
         end=end - origin,
     )
+
+
+def station_of(lamella: Lamella, numbers: Indices) -> Floats:
+    """(n,) stations of the nodes with *numbers* along a lamella, mm.
+
+    On a closed one the numbers go on past its last node, and so do the stations.
+    """
+    around, number = np.divmod(np.asarray(numbers), len(lamella.nodes))
+    return np.asarray(lamella.stations[number] + around * lamella.axis.length)
 
 
 def _moved(spline: CubicSpline, by: float) -> CubicSpline:

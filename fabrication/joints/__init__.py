@@ -1,13 +1,30 @@
 """Joints: one file each, one line in the registry."""
 
+from fabrication.joints.cleats import Cleat
 from fabrication.joints.double_slot import DoubleSlotJoint, StarWasher
 from fabrication.joints.half_lap import slot_width
 from fabrication.joints.joint import Joint
+from fabrication.joints.reciprocal import ReciprocalJoint
+from fabrication.joints.scissor import AnglePlay, ScissorJoint, angle_play
 from fabrication.joints.slot import SlotJoint
 
 JOINTS: dict[str, type[Joint]] = {
     "slot": SlotJoint,
+    "scissor": ScissorJoint,
+    "reciprocal": ReciprocalJoint,
     "double-slot": DoubleSlotJoint,
 }
 
-__all__ = ["JOINTS", "DoubleSlotJoint", "Joint", "SlotJoint", "StarWasher", "slot_width"]
+__all__ = [
+    "JOINTS",
+    "AnglePlay",
+    "Cleat",
+    "DoubleSlotJoint",
+    "Joint",
+    "ReciprocalJoint",
+    "ScissorJoint",
+    "SlotJoint",
+    "StarWasher",
+    "angle_play",
+    "slot_width",
+]

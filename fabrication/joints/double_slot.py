@@ -148,7 +148,7 @@ class DoubleSlotJoint(Joint):
             fixtures=fixtures,
             connectors=(washers, *bolts),
             bill=(*self._bill(washers), *_bolt_lines(lengths, self.bolt)),
-            findings=(*slot_findings(made.strips), *self._findings(design, regular)),
+            findings=(*slot_findings(design), *self._findings(design, regular)),
         )
 
     # ---- washers and bolts ---------------------------------------------------------------------

@@ -39,7 +39,7 @@ class HalfLap:
     ----------
     clearance, depth_clearance : see ``SlotJoint``, mm.
     sweep : smallest and largest angle between the two strips that the slots must let pass besides
-        their own, while the grid is opened like scissors, radians.
+        their own, while the grid is opened like scissors, flat on the ground, radians.
     """
 
     clearance: float = 0.3
@@ -118,27 +118,28 @@ def slot_findings(strips: Structure) -> tuple[Finding, ...]:
 
 def slot_widths(strips: Structure, nodes: Sequence[Node], lap: HalfLap) -> Floats:
     """(n, 2) drawn widths of the slots in family 1 and in family 2 at regular *nodes*, mm."""
-    tangents, twists = _at_nodes(strips, nodes)
+    tangents, twists = at_nodes(strips, nodes)
     axes = np.array([node.axis for node in nodes]).reshape(-1, 3)
     across = np.einsum("nc,nc->n", np.cross(tangents[:, 0], tangents[:, 1]), axes)
     angle = np.arctan2(across, np.einsum("nc,nc->n", tangents[:, 0], tangents[:, 1]))
     shared = np.linspace(-lap.depth_clearance, strips.profile.width / 2.0, _HEIGHTS)
     thickness = strips.profile.thickness
-    angles = [angle]
+    states = [(angle, twists)]
     if lap.sweep is not None:
-        angles += [np.copysign(np.full_like(angle, turned), angle) for turned in lap.sweep]
+        flat = np.zeros_like(twists)
+        states += [(np.copysign(np.full_like(angle, a), angle), flat) for a in lap.sweep]
     filled = [
         np.max(
             [
                 slot_width(
                     angle=sign * at[:, None],
-                    own_twist=twists[:, own, None],
-                    partner_twist=twists[:, 1 - own, None],
+                    own_twist=turning[:, own, None],
+                    partner_twist=turning[:, 1 - own, None],
                     own_thickness=thickness,
                     partner_thickness=thickness,
                     heights=sign * shared,
                 ).max(axis=1)
-                for at in angles
+                for at, turning in states
             ],
             axis=0,
         )
@@ -190,7 +191,7 @@ def slot_width(
     return np.asarray((partner_part + own_part) / np.abs(np.sin(angle - d1 + d2)))
 
 
-def _at_nodes(structure: Structure, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
+def at_nodes(structure: Structure, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
     """(n, 2, 3) tangents and (n, 2) rates of twist of both families at regular *nodes*."""
     tangents, twists = np.zeros((len(nodes), 2, 3)), np.zeros((len(nodes), 2))
     for number, entries in _rows(nodes).items():

@@ -5,7 +5,7 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.lamella import axis_curve
+from fabrication.lamella import axis_curve, piece_of
 
 R = 4000.0
 CATENOID = gs.Catenoid(R)
@@ -189,3 +189,32 @@ def test_a_hoop_bends_with_the_curvature_of_its_circle(tube):
     radius = np.linalg.norm(hoop.axis.spline(hoop.stations)[:, :2], axis=1).mean()
     curvature = np.hypot(*hoop.bending(over(hoop)))
     np.testing.assert_allclose(curvature, 1.0 / radius, rtol=2e-2)
+
+
+# ---- pieces ---------------------------------------------------------------------------------
+
+
+def test_a_piece_lies_where_its_length_of_the_lamella_lies(enneper):
+    lamella = enneper.structure.lamellas[0]
+    first, last = lamella.stations[1:3]
+    piece = piece_of(lamella, "A1.1", (1, 2), first + 5.0, last - 7.0)
+    assert (piece.mark, piece.family) == ("A1.1", lamella.family)
+    assert piece.length == pytest.approx(last - first - 12.0)
+    np.testing.assert_array_equal(piece.nodes, lamella.nodes[1:3])
+    np.testing.assert_allclose(piece.stations, [0.0, last - first])
+    s, y, z = np.linspace(0.0, 300.0, 7), np.full(7, 1.2), np.full(7, -40.0)
+    np.testing.assert_allclose(piece.place(s, y, z), lamella.place(s + first, y, z), atol=1e-9)
+
+
+def test_a_piece_of_a_hoop_may_go_on_over_its_first_node(tube):
+    lamella = next(one for one in tube.structure.lamellas if one.closed)
+    count, around = len(lamella.nodes), lamella.axis.length
+    start = float(lamella.stations[-1])
+    piece = piece_of(lamella, "A1.9", (count - 1, count + 1), start, around + lamella.stations[1])
+    assert not piece.closed
+    np.testing.assert_array_equal(piece.nodes, lamella.nodes[[-1, 0, 1]])
+    bays = np.diff(np.r_[start, around, around + lamella.stations[1]])
+    np.testing.assert_allclose(np.diff(piece.stations), bays)
+    positions = [tube.structure.nodes[i].position for i in piece.nodes.tolist()]
+    zero = np.zeros(3)
+    np.testing.assert_allclose(piece.place(piece.stations, zero, zero), positions, atol=1e-6)
