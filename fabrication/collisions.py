@@ -75,7 +75,7 @@ def collisions(structure: Structure, parts: Sequence[FlatPart]) -> tuple[Finding
 
 def _singular_beside(structure: Structure, points: Points) -> Indices:
     """(n,) index of a node of more than two lamellas within a strip's width, -1 for none."""
-    singular = [i for i, node in enumerate(structure.nodes) if len(node.crossings) > 2]
+    singular = [i for i, node in enumerate(structure.nodes) if node.singular]
     beside = np.full(len(points), -1)
     for i in singular:
         apart = np.linalg.norm(points - structure.nodes[i].position, axis=1)

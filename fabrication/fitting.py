@@ -155,13 +155,8 @@ def _nearest_nodes(strips: Structure, points: Points) -> list[str]:
         return []
     tree = cKDTree([node.position for node in strips.nodes])
     _, nearest = tree.query(points)
-    names = ["" if _singular(strips, i) else strips.nodes[i].name for i in range(len(strips.nodes))]
+    names = ["" if node.singular else node.name for node in strips.nodes]
     return [names[i] for i in nearest.tolist()]
-
-
-def _singular(strips: Structure, i: int) -> bool:
-    node = strips.nodes[i]
-    return node.angle is None and len(node.crossings) > 2
 
 
 # ---- connectors --------------------------------------------------------------------------------

@@ -47,3 +47,8 @@ class Node:
     def regular(self) -> bool:
         """Whether exactly one lamella of each family crosses here."""
         return self.angle is not None and len(self.crossings) == 2
+
+    @property
+    def singular(self) -> bool:
+        """Whether more than two lamellas end here, so that no two of them cross."""
+        return self.angle is None and len(self.crossings) > 2

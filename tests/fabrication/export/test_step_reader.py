@@ -92,6 +92,7 @@ def test_x_is_measured_along_the_strip_whatever_the_parameters_are(case):
         near=stretched(part.near, 2.5),
         far=stretched(part.far, 2.5),
         near_loops=tuple(loop * np.array([2.5, 1.0, 1.0]) for loop in part.near_loops),
+        far_loops=tuple(loop * np.array([2.5, 1.0, 1.0]) for loop in part.far_loops),
     )
     x, y = np.linspace(0.0, 900.0, 9), np.linspace(0.0, 100.0, 9)
     np.testing.assert_allclose(other.place(x, y), part.place(x, y), atol=1e-6)
