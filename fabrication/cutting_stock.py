@@ -36,12 +36,19 @@ _MANY_SIZES = 300
 """Beyond so many sizes the patterns are not listed."""
 
 
-def cut_bars(pieces: Sequence[BarPiece], bar: Bar, *, seconds: float = 20.0) -> BarPlan:
+def cut_bars(
+    pieces: Sequence[BarPiece],
+    bar: Bar,
+    *,
+    seconds: float = 20.0,
+    known: Sequence[Sequence[str]] = (),
+) -> BarPlan:
     """Cut all *pieces* from as few bars as possible.
 
     Parameters
     ----------
     seconds : after which the best plan and the best bound so far are returned.
+    known : a plan to start from, as marks of all pieces bar by bar.
 
     Raises
     ------
@@ -54,11 +61,13 @@ def cut_bars(pieces: Sequence[BarPiece], bar: Bar, *, seconds: float = 20.0) -> 
     deadline = time.monotonic() + seconds
     demand = _demand(pieces, bar)
     start = _first_fit(demand)
-    generated, bound = _generated(demand, start, deadline)
-    best = start
+    if known and len(known) < len(start):
+        start = _counted(known, pieces, demand)
+    best, bound = start, _bare(demand)
     if bound < len(best):
+        generated, bound = _generated(demand, start, deadline)
         best = _better(best, _whole(demand, generated, deadline))
-    if bound < len(best):
+    if bound < len(best) and time.monotonic() < deadline:
         listed = _all_patterns(demand)
         if listed is not None:
             found, proven = _whole_with_bound(demand, listed, deadline)
@@ -87,6 +96,20 @@ def _demand(pieces: Sequence[BarPiece], bar: Bar) -> _Demand:
     return _Demand(sizes, wanted, members, bar.room + bar.kerf + ROUNDING)
 
 
+def _counted(
+    known: Sequence[Sequence[str]], pieces: Sequence[BarPiece], demand: _Demand
+) -> list[Indices]:
+    """Patterns of a plan given by marks."""
+    size = {pieces[i].mark: k for k, group in enumerate(demand.members) for i in group}
+    kinds = len(demand.sizes)
+    return [np.bincount([size[mark] for mark in marks], minlength=kinds) for marks in known]
+
+
+def _bare(demand: _Demand) -> int:
+    """Bars for the bare length of all pieces."""
+    return int(np.ceil(demand.sizes @ demand.wanted / demand.room - ROUNDING))
+
+
 def _first_fit(demand: _Demand) -> list[Indices]:
     """Patterns of first-fit decreasing, one per bar, each (k,) counts per size."""
     free: list[float] = []
@@ -112,7 +135,7 @@ def _generated(
     own = np.eye(len(demand.sizes), dtype=np.int64)
     alone = np.minimum(demand.wanted, np.floor(demand.room / demand.sizes)).astype(np.int64)
     patterns = [*(own * alone[:, None]), *start]
-    bound = np.ceil(demand.sizes @ demand.wanted / demand.room - ROUNDING)
+    bound = float(_bare(demand))
     up = np.ceil(demand.sizes * _PER_MM - 1e-6).astype(np.int64)
     down = np.floor(demand.sizes * _PER_MM + 1e-9).astype(np.int64)
     room = int(np.floor(demand.room * _PER_MM))
