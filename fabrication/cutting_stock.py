@@ -1,8 +1,8 @@
 """Pieces from bars, with as few bars as there can be: one-dimensional cutting stock.
 
 Column generation (Gilmore and Gomory, Operations Research 9, 1961): a linear programme over
-patterns, ways to cut a bar, to which the pattern that its prices find best is added until no pattern
-is worth more than a bar. That pattern is a knapsack, solved exactly by dynamic programming over
+patterns, ways to cut a bar, to which the pattern that its prices find best is added until none is
+worth more than a bar. That pattern is a knapsack, solved exactly by dynamic programming over
 tenths of a millimetre. An integer programme over the patterns found gives the plan.
 
 The bound is Farley's (Operations Research 38, 1990): with prices that no pattern exceeds by more
@@ -30,7 +30,7 @@ _ENOUGH = 1e-7
 """A pattern must be worth more than a bar by this."""
 
 _MANY_PATTERNS = 20_000
-"""Up to so many, all patterns are listed where those of the linear programme do not close the gap."""
+"""Up to so many, all are listed where those of the linear programme do not close the gap."""
 
 _MANY_SIZES = 300
 """Beyond so many sizes the patterns are not listed."""
@@ -128,9 +128,7 @@ def _first_fit(demand: _Demand) -> list[Indices]:
 # ---- linear programme ---------------------------------------------------------------------------
 
 
-def _generated(
-    demand: _Demand, start: Sequence[Indices], deadline: float
-) -> tuple[Indices, int]:
+def _generated(demand: _Demand, start: Sequence[Indices], deadline: float) -> tuple[Indices, int]:
     """(m, k) patterns of the linear programme, and a bound for the number of bars."""
     own = np.eye(len(demand.sizes), dtype=np.int64)
     alone = np.minimum(demand.wanted, np.floor(demand.room / demand.sizes)).astype(np.int64)

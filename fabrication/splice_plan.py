@@ -118,9 +118,7 @@ def preferred(front: Sequence[SplicePlan], splices: Splices) -> SplicePlan:
 # ---- the plan -----------------------------------------------------------------------------------
 
 
-def _plan(
-    runs: Sequence[Run], chosen: Chosen, bar: Bar, gap: float, floor: int
-) -> SplicePlan:
+def _plan(runs: Sequence[Run], chosen: Chosen, bar: Bar, gap: float, floor: int) -> SplicePlan:
     pieces = [piece for run in runs for piece in _pieces(run, chosen.places[run.mark], gap)]
     splices = {mark: places for mark, places in chosen.places.items() if places}
     findings = tuple(_unstaggered(runs, splices))
@@ -149,9 +147,7 @@ def spans(length: float, places: Sequence[Place], gap: float) -> list[tuple[floa
     return [wall for k, wall in enumerate(pairwise(walls)) if k % 2 == 0]
 
 
-def _unstaggered(
-    runs: Sequence[Run], splices: Mapping[str, Sequence[Place]]
-) -> Iterator[Finding]:
+def _unstaggered(runs: Sequence[Run], splices: Mapping[str, Sequence[Place]]) -> Iterator[Finding]:
     told: set[tuple[str, str]] = set()
     for run in runs:
         mine = {place.bay: place for place in splices.get(run.mark, ())}

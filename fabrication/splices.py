@@ -22,6 +22,7 @@ from fabrication.splice_plan import SplicePlan, spans
 from fabrication.splice_plate import SplicePlate, require_room
 from fabrication.splice_search import Place, Run
 from fabrication.structures import Structure
+from gridshell.arrays import Floats
 
 
 def runs_of(
@@ -272,8 +273,9 @@ def _fixtures(
             yield Fixture(lamella.mark, place, feature, x, width / 2.0, position, axis)
 
 
-def _at(lamella: Lamella, x: float, z: float) -> np.ndarray:
-    return lamella.place(np.array([lamella.start + x]), np.zeros(1), np.array([z]))[0]
+def _at(lamella: Lamella, x: float, z: float) -> Floats:
+    at = lamella.place(np.array([lamella.start + x]), np.zeros(1), np.array([z]))
+    return np.asarray(at[0])
 
 
 def _moved(jointed: Jointed, of_strip: dict[str, list[_Cut]]) -> Iterator[Fixture]:
