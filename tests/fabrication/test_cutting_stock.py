@@ -1,4 +1,4 @@
-from functools import lru_cache
+from functools import cache
 
 import pytest
 from hypothesis import given, settings
@@ -22,7 +22,7 @@ def fewest(lengths, bar):
         for m in range(whole + 1)
     ]
 
-    @lru_cache(maxsize=None)
+    @cache
     def least(left):
         if not left:
             return 0

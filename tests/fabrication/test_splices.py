@@ -2,6 +2,8 @@ import json
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import fabrication as fab
 import gridshell as gs
@@ -159,3 +161,32 @@ def test_plates_that_cannot_hold_their_bolts_are_refused(jointed, front):
         SplicePlate(160.0, 10.0, 3.0, fab.STAINLESS)
     with pytest.raises(gs.SettingError, match="wider than the strip"):
         spliced(jointed, front[0], SplicePlate(160.0, 120.0, 3.0, fab.STAINLESS))
+
+
+@settings(max_examples=15)
+@given(
+    st.lists(st.lists(st.floats(100.0, 1500.0), min_size=1, max_size=12), min_size=1, max_size=6),
+    st.floats(0.0, 3.0),
+)
+def test_any_strips_are_cut_into_pieces_that_fit_or_one_is_named(bays, gap):
+    bar, runs = Bar(2000.0), []
+    for i, spans in enumerate(bays):
+        x = np.cumsum(spans)
+        places = tuple(
+            Place(float(b - a / 2.0), (k, k + 1))
+            for k, (a, b) in enumerate(zip(spans, x, strict=True))
+        )
+        runs.append(Run(f"A{i + 1}", float(x[-1]), places, (f"A{i}", f"A{i + 2}")))
+    try:
+        front = tradeoff(runs, bar, gap=gap, shortest=200.0)
+    except StockError as error:
+        assert error.where.startswith("A")
+        return
+    for plan in front:
+        pieces = [piece for cut in plan.bars.cut for piece in cut.pieces]
+        assert len({p.mark for p in pieces}) == len(pieces) == len(runs) + plan.count
+        whole = sum(p.length for p in pieces) + plan.count * gap
+        assert whole == pytest.approx(sum(run.length for run in runs))
+        for cut in plan.bars.cut:
+            assert bar.filled([p.length for p in cut.pieces]) <= bar.room + 1e-5
+        assert plan.floor <= plan.bars.bound <= plan.bars.bars
