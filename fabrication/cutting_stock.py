@@ -65,6 +65,8 @@ def cut_bars(
         start = _counted(known, pieces, demand)
     best, bound = start, _bare(demand)
     if bound < len(best):
+        best = start = _better(best, _fullest(demand))
+    if bound < len(best):
         generated, bound = _generated(demand, start, deadline)
         best = _better(best, _whole(demand, generated, deadline))
     if bound < len(best) and time.monotonic() < deadline:
@@ -122,6 +124,22 @@ def _first_fit(demand: _Demand) -> list[Indices]:
                 filled.append(np.zeros(len(demand.sizes), dtype=np.int64))
             free[here] -= size
             filled[here][k] += 1
+    return filled
+
+
+def _fullest(demand: _Demand) -> list[Indices]:
+    """Patterns bar by bar, each filled as far as the pieces that are left allow, to a mm."""
+    left = demand.wanted.copy()
+    steps = np.ceil(demand.sizes - ROUNDING).astype(np.int64)
+    room = int(demand.room)
+    filled: list[Indices] = []
+    while left.any():
+        counts = _knapsack(steps, demand.sizes * (left > 0), left, room)
+        if not counts.any():
+            counts = np.zeros_like(left)
+            counts[np.flatnonzero(left)[0]] = 1
+        left -= counts
+        filled.append(counts)
     return filled
 
 
