@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from fabrication.errors import StockError
 from fabrication.parts import Label
 from fabrication.stock import Sheet
@@ -115,6 +117,14 @@ def nest(parts: Sequence[SheetPart], sheet: Sheet) -> tuple[NestedSheet, ...]:
         NestedSheet(number, sheet, tuple(placements))
         for number, placements in enumerate(filled, start=1)
     )
+
+
+def sheet_bound(parts: Sequence[SheetPart], sheet: Sheet) -> int:
+    """Sheets that the boxes of all *parts* need at least, by their area with the gaps."""
+    gap = sheet.gap
+    length, width = (size - 2.0 * sheet.margin + gap for size in (sheet.length, sheet.width))
+    boxes = sum((part.length + gap) * (part.width + gap) for part in parts)
+    return int(np.ceil(boxes / (length * width) - _ROUNDING))
 
 
 def _rows(parts: Sequence[SheetPart], sheet: Sheet) -> list[_Row]:

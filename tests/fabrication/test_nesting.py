@@ -9,6 +9,7 @@ from shapely import Polygon, box
 import fabrication as fab
 from fabrication.cut import Edge, Slot, outline
 from fabrication.errors import StockError
+from fabrication.nesting import sheet_bound
 from fabrication.unroll import Development
 
 SHEET = fab.Sheet(6000.0, 767.0, margin=12.0, gap=8.0)
@@ -134,3 +135,9 @@ def test_rows_of_low_parts_share_a_sheet_with_rows_of_high_ones():
     parts = [part(0, 5000.0, 500.0), *(part(i, 5000.0, 100.0) for i in range(1, 4))]
     sheets = fab.nest(parts, SHEET)
     assert [len(sheet.placements) for sheet in sheets] == [3, 1]
+
+
+@given(sizes)
+def test_no_nesting_needs_fewer_sheets_than_the_areas(pairs):
+    parts = [part(i, length, width) for i, (length, width) in enumerate(pairs)]
+    assert 1 <= sheet_bound(parts, SHEET) <= len(fab.nest(parts, SHEET))
