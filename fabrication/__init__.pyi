@@ -57,6 +57,8 @@ from .joints import ReciprocalJoint as ReciprocalJoint
 from .joints import ScissorJoint as ScissorJoint
 from .joints import SlotJoint as SlotJoint
 from .joints import StarWasher as StarWasher
+from .joints import Stud as Stud
+from .joints import StudJoint as StudJoint
 from .joints import angle_play as angle_play
 from .lamella import Lamella as Lamella
 from .loop import Closure as Closure
@@ -91,6 +93,7 @@ from .project import project_text as project_text
 from .project import read_project as read_project
 from .sections import Project as Project
 from .shapes import Bodies as Bodies
+from .shear_blocks import ShearBlock as ShearBlock
 from .sheet_parts import panel_piece as panel_piece
 from .sheet_parts import plate_piece as plate_piece
 from .sheet_parts import shape_piece as shape_piece

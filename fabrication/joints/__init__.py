@@ -7,11 +7,13 @@ from fabrication.joints.joint import Joint
 from fabrication.joints.reciprocal import ReciprocalJoint
 from fabrication.joints.scissor import AnglePlay, ScissorJoint, angle_play
 from fabrication.joints.slot import SlotJoint
+from fabrication.joints.stud import Stud, StudJoint
 
 JOINTS: dict[str, type[Joint]] = {
     "slot": SlotJoint,
     "scissor": ScissorJoint,
     "reciprocal": ReciprocalJoint,
+    "stud": StudJoint,
     "double-slot": DoubleSlotJoint,
 }
 
@@ -25,6 +27,8 @@ __all__ = [
     "ScissorJoint",
     "SlotJoint",
     "StarWasher",
+    "Stud",
+    "StudJoint",
     "angle_play",
     "slot_width",
 ]

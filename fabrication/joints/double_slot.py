@@ -23,13 +23,14 @@ from fabrication.finding import Finding, Severity
 from fabrication.jointed import BillLine, Jointed
 from fabrication.joints.half_lap import HalfLap, half_lap, slot_findings
 from fabrication.joints.joint import Joint
+from fabrication.joints.node_frames import bisector_frames, node_tangents
 from fabrication.node import Node
 from fabrication.outlines import Frame
 from fabrication.shapes import Body, Prisms, Shape, circle
 from fabrication.stock import Material, require_distance, require_positive
 from fabrication.structures import Structure
 from gridshell import SettingError
-from gridshell.arrays import Floats, unit
+from gridshell.arrays import Floats
 
 _WASHER_COLOUR = (0.75, 0.77, 0.80)
 _ALIKE = np.radians(0.5)
@@ -179,11 +180,7 @@ class DoubleSlotJoint(Joint):
                 points = strip.place(s.ravel(), y, z)
                 level = np.einsum("nc,nc->n", points - origin[rows], axis[rows])
                 (np.maximum if way > 0.0 else np.minimum).at(most, rows, level)
-        tangents = np.array([_bisector(design, node) for node in nodes]).reshape(-1, 3)
-        frames = [
-            Frame(o, x, np.cross(z, x)) for o, x, z in zip(origin, tangents, axis, strict=True)
-        ]
-        return frames, low, high
+        return bisector_frames(nodes, node_tangents(design, nodes)), low, high
 
     def _washers(
         self, nodes: Sequence[Node], frames: Sequence[Frame], low: Floats, high: Floats
@@ -282,16 +279,6 @@ class DoubleSlotJoint(Joint):
                     f"beyond the crossings, which reach {needed:.1f} mm. Use beyond = "
                     f"{np.ceil(needed):g}.",
                 )
-
-
-def _bisector(design: Structure, node: Node) -> Floats:
-    """(3,) unit, across the node axis, half-way between the lines of the two families."""
-    a, b = (
-        design.lamellas[c.lamella].axis.tangents(np.array([c.station]))[0] for c in node.crossings
-    )
-    turn = np.dot(np.cross(a, b), node.axis)
-    middle = unit(a + b) if turn > 0.0 else unit(a - b)
-    return np.asarray(unit(middle - (middle @ node.axis) * node.axis))
 
 
 def _bolt_lines(lengths: Sequence[float], diameter: float) -> Iterator[BillLine]:
