@@ -34,6 +34,9 @@ _SLICES = 4
 _SAMPLE = 20.0
 """Between the points that tell which strips are near a connector or a cut end, mm."""
 
+_LONGEST = 250.0
+"""Length of a piece that is taken at once, mm, more or less."""
+
 _ARC = 16
 """Straight pieces of half a circle."""
 
@@ -217,7 +220,9 @@ def _windows(
             own.append((slot.x - reach, slot.x + reach))
     for index, x, reach in _visits(strips, parts, bodies):
         found[index].append((x - reach, x + reach))
-    return [_merged(own, part.length) for own, part in zip(found, parts, strict=True)]
+    return [
+        _divided(_merged(own, part.length), part) for own, part in zip(found, parts, strict=True)
+    ]
 
 
 def _visits(
@@ -229,18 +234,19 @@ def _visits(
     owner, x, points = _samples(strips, parts)
     width = strips.profile.width
     apart = float(np.hypot(_SAMPLE / 2.0, width / 4.0))
-    bodies_core = [
-        (core, body.radius + apart + _SAMPLE / 2.0) for body in bodies for core in body.core
-    ]
     tree = cKDTree(points)
-    for core, radius in bodies_core:
-        for i in tree.query_ball_point(core, radius):
+    if bodies:
+        cores = np.concatenate([body.core for body in bodies])
+        reach = np.repeat([body.radius for body in bodies], [len(body.core) for body in bodies])
+        hits = tree.query_ball_point(cores, reach + apart + _SAMPLE / 2.0)
+        near = np.unique(np.concatenate([np.array(hit, dtype=int) for hit in hits]))
+        for i in near.tolist():
             yield int(owner[i]), float(x[i]), _SAMPLE
     ends = _ends(strips, parts)
     hits = tree.query_ball_point(ends, apart + 2.0 * strips.profile.thickness + width / 8.0)
-    for row, near in enumerate(hits):
+    for row, found in enumerate(hits):
         own = row // 6
-        beside = [i for i in near if owner[i] != own]
+        beside = [i for i in found if owner[i] != own]
         for i in beside:
             yield int(owner[i]), float(x[i]), _SAMPLE
         if beside:
@@ -281,6 +287,26 @@ def _merged(windows: Sequence[_Window], length: float) -> list[_Window]:
     return merged
 
 
+def _divided(windows: Sequence[_Window], part: FlatPart) -> list[_Window]:
+    """Windows of moderate length; none ends within a slot or a hole."""
+    closed = [(slot.x - slot.width, slot.x + slot.width) for slot in part.slots]
+    closed += [(hole.x - hole.diameter, hole.x + hole.diameter) for hole in part.holes]
+    closed.sort()
+    divided = []
+    for low, high in windows:
+        start = low
+        while high - start > 1.5 * _LONGEST:
+            end = start + _LONGEST
+            for a, b in closed:
+                if a < end < b:
+                    end = b
+            divided.append((start, min(end, high)))
+            start = min(end, high)
+        if high > start:
+            divided.append((start, high))
+    return divided
+
+
 def _pieces(
     index: int, lamella: Lamella, part: FlatPart, windows: Sequence[_Window]
 ) -> Iterator[_Solid]:
@@ -299,9 +325,13 @@ def _pieces(
                 tri_verts=lattice.triangles.astype(np.uint64),
             )
         )
-        for hole in part.holes:
-            if lattice.low < hole.x < lattice.high:
-                solid -= _drill(lamella, part, hole.x, hole.y, hole.diameter)
+        drills = [
+            _drill(lamella, part, hole.x, hole.y, hole.diameter)
+            for hole in part.holes
+            if lattice.low < hole.x < lattice.high
+        ]
+        if drills:
+            solid = manifold3d.Manifold.batch_boolean([solid, *drills], manifold3d.OpType.Subtract)
         nodes = frozenset(s.node for s in part.slots if lattice.low < s.x < lattice.high)
         yield _boxed(solid, index, points[:1], nodes=nodes)
 
