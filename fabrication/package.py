@@ -28,10 +28,16 @@ from fabrication.starts import Start, start
 FILES = ("net.json", "net.obj", "parts.csv", "report.html", "report.json", "structure.step")
 """What every run makes, besides ``sheets/*.dxf``."""
 
+_SHEETS = (
+    *("sheet", "bar", "star-washers", "splices", "coupon"),
+    *("panels", "plates", "stars"),
+)
+
 _STALE = (
-    *(f"sheets/{name}-*.dxf" for name in ("sheet", "panels", "plates", "stars")),
+    *(f"sheets/{name}-*.dxf" for name in _SHEETS),
     "facade.step",
-    "beams.csv",
+    *(f"{name}.csv" for name in ("assembly", "bars", "bays", "beams", "bill", "flat")),
+    *(f"{name}.pdf" for name in ("drawings", "labels", "templates")),
 )
 
 _ANCHORS: dict[str, gs.Anchor] = {

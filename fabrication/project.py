@@ -18,7 +18,14 @@ from typing import Any, get_args
 from pydantic import ValidationError
 
 from fabrication.errors import ProjectError
-from fabrication.joint_sections import JointSection, WasherSection
+from fabrication.joint_sections import (
+    BlocksSection,
+    CleatSection,
+    JointSection,
+    StudSection,
+    WasherSection,
+)
+from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection, SpliceSection
 from fabrication.panel_sections import (
     ConnectorSection,
     FacadeSection,
@@ -192,6 +199,13 @@ def _sections() -> dict[str, type[Section]]:
         "net": NetSection,
         "profile": ProfileSection,
         "washer": WasherSection,
+        "cleat": CleatSection,
+        "stud": StudSection,
+        "blocks": BlocksSection,
+        "bars": BarsSection,
+        "splice": SpliceSection,
+        "flat": FlatSection,
+        "papers": PapersSection,
         "sheet": SheetSection,
         "own material": MaterialSection,
         "panels": PanelsSection,

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from fabrication.joint_sections import JointSection
+from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection
 from fabrication.panel_sections import (
     BeamsSection,
     ConnectorSection,
@@ -86,6 +87,9 @@ class Project(Section):
     net: NetSection
     profile: ProfileSection | None = None
     joint: JointSection | None = None
+    bars: BarsSection | None = None
+    flat: FlatSection | None = None
+    papers: PapersSection | None = None
     facade: FacadeSection | None = None
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None
@@ -153,7 +157,7 @@ class Project(Section):
 
 
 _SECTIONS = {
-    "asymptotic": ("profile", "joint", "facade"),
+    "asymptotic": ("profile", "joint", "facade", "bars", "flat", "papers"),
     "planar": ("panels", "supports", "connector", "beams"),
 }
 _NEEDED = {"asymptotic": ("profile", "joint"), "planar": ("panels",)}

@@ -13,7 +13,7 @@ JOINTS: dict[str, type[Joint]] = {
     "slot": SlotJoint,
     "scissor": ScissorJoint,
     "reciprocal": ReciprocalJoint,
-    "stud": StudJoint,
+    "two-level": StudJoint,
     "double-slot": DoubleSlotJoint,
 }
 

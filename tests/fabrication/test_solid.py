@@ -3,6 +3,7 @@ from dataclasses import replace
 from importlib.util import module_from_spec, spec_from_file_location
 
 import build123d
+import cadquery
 import numpy as np
 import pytest
 from OCP.BRepCheck import BRepCheck_Analyzer
@@ -11,8 +12,9 @@ import fabrication as fab
 import gridshell as gs
 from fabrication import solid
 from fabrication.colours import FAMILY_COLOURS
-from fabrication.cut import Edge, Slot
+from fabrication.cut import Edge, Floor, Hole, Relief, Slot
 from fabrication.errors import KernelError
+from fabrication.parts import parts_of
 
 pytestmark = pytest.mark.xdist_group("kernel")
 
@@ -169,3 +171,28 @@ def test_thickness_is_centred_on_the_middle_surface(pair, with_slots):
         solid.volume(solid.lamella_solid(lamella, one)) for one in (part, thick)
     )
     assert thick_volume == pytest.approx(2.0 * thin_volume, rel=1e-5)
+
+
+# ---- arcs, holes and bevelled ends --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("relief", [Relief(), Relief(Floor.ROUND), Relief(Floor.DOGBONE, 0.3)])
+@pytest.mark.parametrize("bevels", [(0.0, 0.0), (0.9, -0.8), (-0.9, 0.8)])
+def test_any_cuts_keep_the_volume_and_come_back_from_step(enneper, relief, bevels, tmp_path):
+    lamella = enneper.structure.lamellas[0]
+    part = parts_of(fab.SlotJoint().build(enneper.structure), relief)[0]
+    holes = tuple(Hole(x, 20.0, 6.0, "N1", "bolt M5") for x in (15.0, part.length - 15.0))
+    part = replace(part, holes=holes, bevels=bevels)
+    made = solid.lamella_solid(lamella, part)
+    assert solid.volume(made) == pytest.approx(part.volume, rel=2e-6)
+    whole = cadquery.Assembly(name="one").add(cadquery.Shape.cast(made), name="A1")
+    fab.write_step(whole, tmp_path / "one.step")
+    (found,) = fab.read_step(tmp_path / "one.step")
+    assert found.volume() == pytest.approx(part.volume, rel=2e-5)
+    np.testing.assert_allclose(found.circles(), part.circles, atol=2e-3)
+    for loops, face in zip((found.near_loops, found.far_loops), part.faces, strict=True):
+        loop = found.unrolled_loop(loops[0])
+        wanted = np.column_stack([face, np.zeros(len(face))]) if face.shape[1] == 2 else face
+        assert loop.shape == wanted.shape
+        apart = np.abs(loop[:, None] - wanted[None]).max(axis=2)
+        assert apart.min(axis=0).max() < 5e-3

@@ -1,0 +1,162 @@
+"""What strips, washers and splice plates are cut from: bars or sheets, and how they lie there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from fabrication.bars import Bar, CutBar
+from fabrication.finding import Finding
+from fabrication.joint_settings import own_or_strips
+from fabrication.jointed import Jointed
+from fabrication.lamella_sections import BarsSection, SpliceSection
+from fabrication.nesting import NestedSheet, Placement, SheetPart, nest, sheet_bound
+from fabrication.parts import FlatPart
+from fabrication.routes import Report
+from fabrication.sections import Project
+from fabrication.settings import sheet_of
+from fabrication.shapes import Prisms
+from fabrication.sheet_parts import shape_piece
+from fabrication.splice_plan import SplicePlan, Splices, preferred, tradeoff
+from fabrication.splice_plate import Sides, SplicePlate
+from fabrication.splice_search import Run
+from fabrication.splices import runs_of, splice_plates, spliced
+from fabrication.stock import Profile, Sheet
+
+_WISHES = {
+    "few-splices": Splices.FEW,
+    "balanced": Splices.BALANCED,
+    "few-bars": Splices.FEW_BARS,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class SheetSet:
+    """Sheets or bars of one material and thickness.
+
+    Parameters
+    ----------
+    prefix : of the files' names: "sheet", "bar", "star-washers", ...
+    bound : no nesting needs fewer sheets; of bars, no cutting plan for the same pieces.
+    """
+
+    prefix: str
+    material: str
+    sheets: tuple[NestedSheet, ...]
+    bound: int
+
+    def figures(self) -> Report:
+        """For the report."""
+        used = [sheet.used for sheet in self.sheets]
+        return {
+            "sheets": len(self.sheets),
+            "bound": self.bound,
+            "used": round(sum(used) / len(used), 4) if used else 0.0,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class BarStock:
+    """Strips cut from bars.
+
+    Parameters
+    ----------
+    plan : splices and bars that were chosen.
+    front : the plans it was chosen from.
+    plate : of the splices; None where no strip is spliced.
+    """
+
+    plan: SplicePlan
+    front: tuple[SplicePlan, ...]
+    plate: SplicePlate | None
+
+    @property
+    def findings(self) -> Sequence[Finding]:
+        """Splices that are not staggered."""
+        return self.plan.findings
+
+    def applied(self, jointed: Jointed) -> Jointed:
+        """*jointed* with its strips cut into the plan's pieces."""
+        if self.plate is None or not self.plan.splices:
+            return jointed
+        return spliced(jointed, self.plan, self.plate)
+
+
+def bar_stock(jointed: Jointed, section: BarsSection) -> BarStock:
+    """Choose splices and bars for the strips of *jointed*.
+
+    Raises
+    ------
+    StockError
+        Naming a strip, or the length between two places to splice, that fits no bar.
+    SettingError
+        For sizes of bars or plates that cannot be.
+    """
+    bar = Bar(section.length, section.kerf, section.trim)
+    if section.splice is None:
+        plate = None
+        runs = tuple(Run(s.mark, s.length, (), ()) for s in jointed.strips.lamellas)
+        front = tradeoff(runs, bar)
+    else:
+        plate = splice_plate(section.splice, jointed.strips.profile)
+        runs = runs_of(jointed, plate, clear=section.splice.clear)
+        front = tradeoff(runs, bar, gap=section.splice.gap, shortest=section.shortest)
+    return BarStock(preferred(front, _WISHES[section.prefer]), front, plate)
+
+
+def splice_plate(section: SpliceSection, profile: Profile) -> SplicePlate:
+    """The plate of ``[bars.splice]``."""
+    return SplicePlate(
+        length=section.length,
+        width=0.75 * profile.width if section.width is None else section.width,
+        thickness=profile.thickness if section.thickness is None else section.thickness,
+        material=own_or_strips(section.material, profile),
+        bolt=section.bolt,
+        bolts=section.bolts,
+        sides=Sides(section.sides),
+    )
+
+
+def strip_sheets(
+    parts: Sequence[FlatPart], project: Project, profile: Profile, bars: BarStock | None
+) -> SheetSet:
+    """The strips on their sheets, or on the bars of the plan."""
+    material = profile.material.name
+    if bars is None:
+        sheet = sheet_of(project.sheet)
+        return SheetSet("sheet", material, nest(parts, sheet), sheet_bound(parts, sheet))
+    named = {part.mark: part for part in parts}
+    cut = tuple(_as_sheet(bar, named, profile) for bar in bars.plan.bars.cut)
+    return SheetSet("bar", material, cut, bars.plan.bars.bound)
+
+
+def _as_sheet(cut: CutBar, parts: dict[str, FlatPart], profile: Profile) -> NestedSheet:
+    raw = Sheet(cut.bar.length, profile.width, margin=0.0, gap=cut.bar.kerf)
+    placed = zip(cut.pieces, cut.positions, strict=True)
+    return NestedSheet(
+        cut.number, raw, tuple(Placement(parts[piece.mark], x, 0.0) for piece, x in placed)
+    )
+
+
+def other_sheets(
+    jointed: Jointed, project: Project, bars: BarStock | None, coupons: Sequence[SheetPart] = ()
+) -> Iterator[SheetSet]:
+    """Connectors that are cut from sheet, splice plates and coupons, each on sheets of its own."""
+    sheet = sheet_of(project.panel_sheet or project.sheet)
+    for kind in jointed.connectors:
+        if kind.from_sheet and kind.bodies:
+            yield _nested(kind.name.replace(" ", "-"), kind.material, _pieces(kind), sheet)
+    if bars is not None and bars.plate is not None and bars.plan.splices:
+        plates = splice_plates(bars.plan, bars.plate)
+        yield _nested("splices", bars.plate.material.name, plates, sheet)
+    if coupons:
+        material = jointed.strips.profile.material.name
+        yield _nested("coupon", material, coupons, sheet_of(project.sheet))
+
+
+def _pieces(kind: Prisms) -> list[SheetPart]:
+    return [shape_piece(body.mark, kind.shapes[body.shape]) for body in kind.bodies]
+
+
+def _nested(prefix: str, material: str, parts: Sequence[SheetPart], sheet: Sheet) -> SheetSet:
+    return SheetSet(prefix, material, nest(parts, sheet), sheet_bound(parts, sheet))
