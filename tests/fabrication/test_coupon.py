@@ -1,5 +1,6 @@
 """The fit-test coupon."""
 
+import itertools
 from math import pi, radians
 
 import numpy as np
@@ -13,7 +14,9 @@ from fabrication.nesting import SheetPart
 PROFILE = fab.Profile(width=60.0, thickness=4.0, material=fab.S235)
 
 
-@pytest.mark.parametrize("degrees, factor", [(90, 1.0), (60, 3**0.5), (120, 3**0.5), (45, 2.41421)])
+@pytest.mark.parametrize(
+    ("degrees", "factor"), [(90, 1.0), (60, 3**0.5), (120, 3**0.5), (45, 2.41421)]
+)
 def test_slots_are_as_wide_as_a_strip_at_the_angle_and_graded(
     degrees: float, factor: float
 ) -> None:
@@ -34,8 +37,9 @@ def test_it_is_a_sheet_part_whose_labels_keep_clear() -> None:
         (x.x - 0.45 * x.height * len(x.text), x.x + 0.45 * x.height * len(x.text))
         for x in part.labels
     ]
-    assert all(a[1] < b[0] for a, b in zip(spans, spans[1:], strict=False))
-    assert spans[0][0] > 0.0 and spans[-1][1] < part.length
+    assert all(a[1] < b[0] for a, b in itertools.pairwise(spans))
+    assert spans[0][0] > 0.0
+    assert spans[-1][1] < part.length
     assert all(x.y + x.height / 2.0 < 29.5 for x in part.labels)
 
 
