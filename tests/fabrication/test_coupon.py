@@ -2,6 +2,7 @@
 
 import itertools
 from math import pi, radians
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,6 +56,6 @@ def test_it_is_a_sheet_part_whose_labels_keep_clear() -> None:
         {"clearance": float("nan")},
     ],
 )
-def test_bad_input_is_refused(bad: dict[str, float]) -> None:
+def test_bad_input_is_refused(bad: dict[str, Any]) -> None:
     with pytest.raises(gs.SettingError):
         coupon(PROFILE, **bad)

@@ -2,13 +2,14 @@
 
 import subprocess
 from pathlib import Path
+from typing import Any
 
 from fabrication.export.papers.labels import write_labels
 from fabrication.joints.slot import SlotJoint
 from fabrication.parts import flat_parts
 
 
-def test_every_mark_and_length_is_on_its_label(tmp_path: Path, catenoid: Design) -> None:
+def test_every_mark_and_length_is_on_its_label(tmp_path: Path, catenoid: Any) -> None:
     parts = flat_parts(catenoid.structure, SlotJoint())
     path = write_labels(tmp_path / "labels.pdf", parts, name="Pavilion", material="S235")
     text = subprocess.run(
