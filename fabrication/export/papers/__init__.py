@@ -1,0 +1,1 @@
+"""Papers for the shop: the only package that imports reportlab."""
