@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, date, datetime
 from pathlib import Path
 
@@ -98,7 +98,7 @@ class Pen:
         if closed:
             path.close()
         self.canvas.setLineWidth(width * mm)
-        self.canvas.setDash([d * mm for d in dash] or None)
+        self.canvas.setDash([d * mm for d in dash])
         self.canvas.setStrokeGray(grey)
         if fill is not None:
             self.canvas.setFillGray(fill)
@@ -107,7 +107,7 @@ class Pen:
     def circle(self, x: float, y: float, radius: float, *, width: float = MEDIUM) -> None:
         """A circle's outline."""
         self.canvas.setLineWidth(width * mm)
-        self.canvas.setDash(None)
+        self.canvas.setDash([])
         self.canvas.setStrokeGray(0.0)
         self.canvas.circle(x * mm, y * mm, radius * mm, stroke=1, fill=0)
 
@@ -154,7 +154,7 @@ def printable(text: str) -> str:
 def text_width(text: str, height: float = TEXT, *, bold: bool = False) -> float:
     """Length of a line of text, mm."""
     font = _BOLD if bold else _FONT
-    return float(stringWidth(printable(text), font, height / _CAP * mm)) / mm
+    return float(stringWidth(printable(text), font, height / _CAP * mm) / mm)
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def write_pages(
     canvas.setTitle(f"{printable(titles.project)}: drawings")
     pen = Pen(canvas)
     for number, page in enumerate(pages, start=1):
-        _frame(pen, area, replace(titles), page, f"{number} / {len(pages)}")
+        _frame(pen, area, titles, page, f"{number} / {len(pages)}")
         page.draw(pen, area)
         canvas.showPage()
     try:
