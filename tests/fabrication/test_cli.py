@@ -386,7 +386,7 @@ def interrupted(command, write, tmp_path, monkeypatch):
     def stop(*args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fabrication.lamella_route.fit", stop)
+    monkeypatch.setattr("fabrication.lamella_system.fit", stop)
     path = write()
     return path, command("run", path, "--out", tmp_path / "out")
 
@@ -405,7 +405,7 @@ def test_an_interrupted_run_says_so(interrupted):
 
 TERMINATED = """
 import os, signal
-import fabrication.lamella_route as route
+import fabrication.lamella_system as route
 fit = route.fit
 def stop(*args):
     os.kill(os.getpid(), signal.SIGTERM)

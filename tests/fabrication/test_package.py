@@ -10,7 +10,7 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication import lamella_route, package, routes
+from fabrication import lamella_system, package, routes
 from fabrication.cut import area
 from fabrication.errors import KernelError, OutputError, StockError
 from fabrication.finding import Finding, Severity
@@ -29,7 +29,7 @@ SMALL = {
 }
 FILES = {
     *["net.json", "net.obj", "report.json", "report.html", "structure.step", "parts.csv"],
-    *["sheets/sheet-01.dxf", "sheets/sheet-02.dxf"],
+    *["assembly.csv", "bays.csv", "bill.csv", "sheets/sheet-01.dxf", "sheets/sheet-02.dxf"],
 }
 
 
@@ -142,7 +142,7 @@ def test_a_good_project_has_no_findings_and_closes(done):
     assert report["findings"] == []
     assert report["closure"]["max_mm"] < routes.CLOSURE_LIMIT
     assert report["closure"]["volume_ppm"] < routes.VOLUME_LIMIT
-    assert report["fit"]["clash_mm3"]["max"] < lamella_route.CLASH_LIMIT
+    assert report["fit"]["clash_mm3"]["max"] < lamella_system.CLASH_LIMIT
     assert report["fit"]["nodes"] == 9
 
 
@@ -251,7 +251,7 @@ def test_the_other_skin_is_built_of_the_other_half_of_the_net(tmp_path):
 def test_files_that_do_not_close_are_findings_of_severity_error():
     closed = {"worst": "A1 at N1", "max_mm": 0.06, "volume_ppm": 21.0}
     fit = fab.Fit(max_mm3=0.002, worst="N3", nodes=9)
-    found = lamella_route.lamella_loop_findings(closed, fit)
+    found = lamella_system.lamella_loop_findings(closed, fit)
     assert [(f.code, f.where, f.value, f.limit) for f in found] == [
         ("closure", "A1 at N1", 0.06, 0.05),
         ("volume", "all", 21.0, 20.0),
