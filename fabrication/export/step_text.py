@@ -85,7 +85,8 @@ def _first_part(texts: Mapping[int, bytes], root: int, start: int) -> int:
     """The smallest number of a part that the block of *root* refers to."""
     found: list[int] = []
     for item in _references(texts[root]):
-        found += [n for n in _references(texts[item]) if n < start]
+        if item >= start:
+            found += [n for n in _references(texts[item]) if n < start]
     return min(found, default=start)
 
 
