@@ -1,0 +1,220 @@
+"""What a DXF file of anyone's draws, as plain data: lines by layer, and what cannot be cut at all.
+
+Every DXF can be read: damaged ones are mended as far as they go, and what was mended is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from ezdxf import path as curves
+from ezdxf import recover
+from ezdxf.document import Drawing
+from ezdxf.entities.circle import Circle
+from ezdxf.entities.dxfgfx import DXFGraphic
+from ezdxf.entities.line import Line
+from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.entities.polyline import Polyline
+from ezdxf.filemanagement import readfile
+from ezdxf.lldxf.const import DXFError
+
+from gridshell import FileError
+from gridshell.arrays import Floats
+
+APPLICATION = "GRIDSHELL"
+"""Whose extended data hold the marks of parts."""
+
+SAGITTA = 0.01
+"""Between an arc and the lines it is checked as, mm."""
+
+DRAWN = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "SPLINE", "ELLIPSE"}
+"""Entities that are lines."""
+
+_FAULTS = (
+    OSError,
+    DXFError,
+    ValueError,
+    LookupError,
+    StopIteration,
+    TypeError,
+    AttributeError,
+    ArithmeticError,
+    RecursionError,
+)
+"""What reading a file that is no sound DXF can end with."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One line of the drawing.
+
+    Parameters
+    ----------
+    name : kind and handle of the entity: "LWPOLYLINE 2F".
+    layer : as the file calls it.
+    points : (k, 2) corners; arcs as short lines; closed ones begin again with the first, mm.
+    closed : whether it ends where it begins.
+    mark : of the part it belongs to; empty where the file does not say.
+    diameter : of a circle, mm; 0 for all others.
+    """
+
+    name: str
+    layer: str
+    points: Floats
+    closed: bool
+    mark: str = ""
+    diameter: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """The drawing: its lines, and all its entities for the checks that look at them.
+
+    Parameters
+    ----------
+    unreadable : entities whose geometry cannot be told.
+    mended : what was wrong with the file itself.
+    """
+
+    document: Drawing
+    entities: tuple[DXFGraphic, ...]
+    tracks: tuple[Track, ...]
+    unreadable: tuple[str, ...] = ()
+    mended: tuple[str, ...] = field(default=())
+
+
+def read_content(path: Path | str) -> Content:
+    """Read any DXF.
+
+    Raises
+    ------
+    FileError
+        When the file is missing or is no DXF.
+    """
+    document, mended = _document(path)
+    entities = tuple(e for e in document.modelspace() if isinstance(e, DXFGraphic))
+    tracks, unreadable = [], []
+    for entity in entities:
+        if entity.dxftype() in DRAWN:
+            track = _track(entity)
+            if track is None:
+                unreadable.append(entity_name(entity))
+            else:
+                tracks.append(track)
+    return Content(document, entities, tuple(tracks), tuple(unreadable), mended)
+
+
+def _document(path: Path | str) -> tuple[Drawing, tuple[str, ...]]:
+    """The document and what was mended in it."""
+    try:
+        document = readfile(path)
+        faults = document.audit()
+        return document, tuple(e.message for e in (*faults.errors, *faults.fixes))
+    except OSError as error:
+        raise _no_dxf(path, error) from None
+    except _FAULTS as error:
+        first = f"{error}"
+    try:
+        document, faults = recover.readfile(path)
+    except _FAULTS as error:
+        raise _no_dxf(path, error) from None
+    told = tuple(e.message for e in (*faults.errors, *faults.fixes))
+    if not len(document.modelspace()) and "SECTION" not in _head(path):
+        raise _no_dxf(path, first)
+    return document, (first, *told)
+
+
+def _head(path: Path | str) -> str:
+    return Path(path).read_bytes()[:100_000].decode("ascii", errors="replace")
+
+
+def _no_dxf(path: Path | str, why: object) -> FileError:
+    return FileError("The file is no DXF that can be read", where=str(path), value=f"{why}")
+
+
+def entity_name(entity: DXFGraphic) -> str:
+    """Kind and handle, as CAD programs list it."""
+    return f"{entity.dxftype()} {entity.dxf.get('handle', '?')}"
+
+
+def mark_of(entity: DXFGraphic) -> str:
+    """The mark of the part that *entity* belongs to; empty where it does not say."""
+    if not entity.has_xdata(APPLICATION):
+        return ""
+    marks = [str(tag.value) for tag in entity.get_xdata(APPLICATION) if tag.code == 1000]
+    return marks[0] if marks else ""
+
+
+def _track(entity: DXFGraphic) -> Track | None:
+    """The line an entity draws, seen from above."""
+    try:
+        points, closed = _points(entity)
+    except _FAULTS:
+        return None
+    if len(points) < 1 or not np.isfinite(points).all():
+        return None
+    diameter = 2.0 * abs(float(entity.dxf.radius)) if isinstance(entity, Circle) else 0.0
+    if entity.dxftype() == "ARC":
+        diameter = 0.0
+    layer = str(entity.dxf.get("layer", "0"))
+    return Track(entity_name(entity), layer, points, closed, mark_of(entity), diameter)
+
+
+def _points(entity: Any) -> tuple[Floats, bool]:
+    turned = entity.dxf.hasattr("extrusion") and tuple(entity.dxf.extrusion) != (0.0, 0.0, 1.0)
+    flat = not turned
+    if isinstance(entity, Line):
+        return np.array([entity.dxf.start, entity.dxf.end])[:, :2].astype(float), False
+    if flat and isinstance(entity, LWPolyline):
+        rows = np.array(entity.get_points("xyb"), dtype=np.float64).reshape(-1, 3)
+        return flattened(rows, closed=bool(entity.closed)), bool(entity.closed)
+    if flat and isinstance(entity, Polyline) and entity.is_2d_polyline:
+        rows = np.array(
+            [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
+        ).reshape(-1, 3)
+        return flattened(rows, closed=bool(entity.is_closed)), bool(entity.is_closed)
+    line = curves.make_path(entity)
+    points = np.array([(p.x, p.y) for p in line.flattening(SAGITTA)]).reshape(-1, 2)
+    return points, bool(line.is_closed)
+
+
+def flattened(rows: Floats, *, closed: bool) -> Floats:
+    """(n, 2) points of a line with bulges (k, 3); closed ones begin again with the first."""
+    if closed and len(rows):
+        rows = np.concatenate([rows, rows[:1]])
+    bulge = rows[:-1, 2]
+    if not bulge.any():
+        return rows[:, :2]
+    start, chord = rows[:-1, :2], np.diff(rows[:, :2], axis=0)
+    length = np.hypot(*chord.T)
+    sweep = 4.0 * np.arctan(bulge)
+    curved = (np.abs(sweep) > 0.0) & (length > 0.0)
+    radius = np.where(curved, length / (2.0 * np.abs(np.sin(sweep / 2.0)) + 1e-300), 1.0)
+    step = 2.0 * np.arccos(np.clip(1.0 - SAGITTA / radius, -1.0, 1.0))
+    count = np.where(curved, np.ceil(np.abs(sweep) / np.maximum(step, 0.02)), 1).astype(int)
+    first = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    share = place / count[first]
+    turned = np.where(curved, sweep, 0.0)[first]
+    return np.concatenate([_on_arc(start[first], chord[first], turned, share), rows[-1:, :2]])
+
+
+def _on_arc(start: Floats, chord: Floats, sweep: Floats, share: Floats) -> Floats:
+    """(n, 2) points at *share* of arcs with a chord and a sweep; on the chord where it is 0."""
+    half = sweep / 2.0
+    straight = np.abs(half) < 1e-12
+    safe = np.where(straight, 1.0, np.sin(half))
+    reach = np.where(straight, share, np.sin(share * half) / safe)
+    turn = np.where(straight, 0.0, (share - 1.0) * half)
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = chord.T
+    return start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+
+def renamed(tracks: Iterable[Track], layer: str) -> tuple[Track, ...]:
+    """The same lines on another layer."""
+    return tuple(replace(track, layer=layer) for track in tracks)
