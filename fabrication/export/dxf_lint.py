@@ -64,14 +64,15 @@ class _Roles:
     """Which lines are cut and which are engraved."""
 
     def __init__(self, content: Content, layers: Layers) -> None:
-        self._tracks, self._layers = content.tracks, layers
-        named = (str(e.dxf.get("layer", "0")) for e in content.entities)
-        self._strangers_cut = not any(layers.key(name) in ("cut", "drill") for name in named)
+        self._tracks = content.tracks
+        names = {str(e.dxf.get("layer", "0")) for e in content.entities}
+        keys = {name: layers.key(name) for name in names}
+        alone = not {"cut", "drill"} & set(keys.values())
+        self._keys = {n: "cut" if k is None and alone else k for n, k in keys.items()}
 
     def role(self, layer: str) -> str | None:
         """Key of a layer by its name; layers nobody knows are cut where there is no other."""
-        key = self._layers.key(layer)
-        return "cut" if key is None and self._strangers_cut else key
+        return self._keys.get(layer)
 
     def on(self, *keys: str) -> tuple[Track, ...]:
         return tuple(track for track in self._tracks if self.role(track.layer) in keys)
@@ -92,7 +93,7 @@ def _line_findings(
     pieces = pieces_of(found)
     yield from crossing_findings(found, pieces)
     shapes = drawn_parts(found)
-    drilled = {track.name for track in layers.on("drill") if track not in layers.on("cut")}
+    drilled = {track.name for track in layers.on("drill")}
     yield from place_findings(shapes, layers.on("sheet"), drilled)
     yield from limit_findings(shapes, process)
     strokes, engraved_twice = without_doubles(layers.on("mark"))

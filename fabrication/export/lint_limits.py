@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from fabrication.export.lint_pieces import Facing, Pieces, facing, pieces_of
+from fabrication.export.lint_pieces import facing, pieces_of
 from fabrication.export.lint_shapes import DrawnParts
 from fabrication.finding import Finding, Severity
 from fabrication.shop import Process
-from gridshell.arrays import Mask, Floats, Indices
+from gridshell.arrays import Floats, Indices
 
 _ROUNDING = 0.03
 """Of arcs that are checked as lines, both sides, mm."""
@@ -23,21 +23,27 @@ def limit_findings(parts: DrawnParts, process: Process) -> Iterator[Finding]:
         return
     grown = 2.0 * process.offset
     yield from _holes(parts, process)
-    pieces = pieces_of(parts.contours)
-    reach = max(process.min_web + grown, process.min_slot, process.min_edge + grown)
-    if reach <= 0.0:
+    yield from _beside(parts, process, grown)
+    yield from _edges(parts, process.min_edge + grown)
+
+
+def _beside(parts: DrawnParts, process: Process, grown: float) -> Iterator[Finding]:
+    """Webs between cuts that are no round holes, and slots in one outline."""
+    reach = max(process.min_web + grown, process.min_slot)
+    angular = np.flatnonzero(parts.diameters == 0.0)
+    if reach <= 0.0 or not len(angular):
         return
-    near = facing(pieces, reach)
-    same = parts.part[near.first] == parts.part[near.second]
-    round_ = parts.diameters > 0.0
-    hole = round_ & (parts.depth % 2 == 1)
-    of_hole = hole[near.first] | hole[near.second]
-    web, slot = same & near.material & ~of_hole, same & ~near.material
-    slot &= near.first == near.second
-    slot &= ~round_[near.first]
-    yield from _worst(parts, near, web, "thin-web", process.min_web + grown)
-    yield from _worst(parts, near, slot, "narrow-slot", process.min_slot - grown)
-    yield from _edges(parts, pieces, hole, process.min_edge + grown)
+    near = facing(pieces_of([parts.contours[k] for k in angular.tolist()]), reach)
+    first, second = angular[near.first], angular[near.second]
+    web = (parts.part[first] == parts.part[second]) & near.material
+    slot = (first == second) & ~near.material
+    for mask, code, limit in (
+        (web, "thin-web", process.min_web + grown),
+        (slot, "narrow-slot", process.min_slot - grown),
+    ):
+        small = mask & (near.distance < limit - _ROUNDING)
+        of = parts.part[first[small]]
+        yield from _one_per_part(parts, of, near.distance[small], near.at[small], code, limit)
 
 
 def _holes(parts: DrawnParts, process: Process) -> Iterator[Finding]:
@@ -60,14 +66,6 @@ _ADVICE = {
 }
 
 
-def _worst(
-    parts: DrawnParts, near: Facing, mask: Mask, code: str, limit: float
-) -> Iterator[Finding]:
-    mask = mask & (near.distance < limit - _ROUNDING)
-    of = parts.part[near.first[mask]]
-    yield from _one_per_part(parts, of, near.distance[mask], near.at[mask], code, limit)
-
-
 def _one_per_part(
     parts: DrawnParts, of: Indices, distance: Floats, at: Floats, code: str, limit: float
 ) -> Iterator[Finding]:
@@ -83,20 +81,26 @@ def _one_per_part(
         yield Finding(code, Severity.ERROR, name, value, limit, "mm", message)
 
 
-def _edges(parts: DrawnParts, pieces: Pieces, hole: Mask, limit: float) -> Iterator[Finding]:
+def _edges(parts: DrawnParts, limit: float) -> Iterator[Finding]:
     """Round holes too near to any other cut of their part."""
-    holes = np.flatnonzero(hole)
+    holes = np.flatnonzero((parts.diameters > 0.0) & (parts.depth % 2 == 1))
     if not len(holes) or limit <= 0.0:
         return
     middle = shapely.centroid(parts.shapes[holes])
     radius = parts.diameters[holes] / 2.0
-    lines = pieces.geometries
-    i, j = shapely.STRtree(lines).query(middle, predicate="dwithin", distance=radius + limit)
-    other = pieces.owner[j] != holes[i]
-    other &= parts.part[pieces.owner[j]] == parts.part[holes[i]]
-    i, j = i[other], j[other]
-    web = shapely.distance(middle[i], lines[j]) - radius[i]
+    angular = np.flatnonzero(parts.diameters == 0.0)
+    pieces = pieces_of([parts.contours[k] for k in angular.tolist()])
+    i, j = pieces.tree.query(middle, predicate="dwithin", distance=radius + limit)
+    own = parts.part[angular[pieces.owner[j]]] == parts.part[holes[i]]
+    i, j = i[own], j[own]
+    to_cut = shapely.distance(middle[i], pieces.lines[j]) - radius[i]
+    widest = radius + float(radius.max()) + limit
+    k, m = shapely.STRtree(middle).query(middle, predicate="dwithin", distance=widest)
+    pair = (k != m) & (parts.part[holes[k]] == parts.part[holes[m]])
+    k, m = k[pair], m[pair]
+    to_hole = shapely.distance(middle[k], middle[m]) - radius[k] - radius[m]
+    hole, web = np.concatenate([i, k]), np.concatenate([to_cut, to_hole])
     small = web < limit - _ROUNDING
-    at = shapely.get_coordinates(middle)[i[small]]
-    of = parts.part[holes[i[small]]]
+    at = shapely.get_coordinates(middle)[hole[small]]
+    of = parts.part[holes[hole[small]]]
     yield from _one_per_part(parts, of, web[small], at, "near-edge", limit)

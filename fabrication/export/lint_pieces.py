@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -41,13 +42,13 @@ class Pieces:
     order: Indices
     last: Indices
 
-    @property
-    def lines(self) -> shapely.STRtree:
+    @cached_property
+    def tree(self) -> shapely.STRtree:
         """A tree of the pieces."""
-        return shapely.STRtree(self.geometries)
+        return shapely.STRtree(self.lines)
 
-    @property
-    def geometries(self) -> np.ndarray:  # type: ignore[type-arg]
+    @cached_property
+    def lines(self) -> np.ndarray:  # type: ignore[type-arg]
         """(n,) shapely lines."""
         return np.asarray(shapely.linestrings(np.stack([self.a, self.b], axis=1)))
 
@@ -184,8 +185,7 @@ class Facing:
 
 def facing(pieces: Pieces, reach: float) -> Facing:
     """All pairs of pieces nearer than *reach* that run against each other side by side."""
-    lines = pieces.geometries
-    i, j = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=reach)
+    i, j = pieces.tree.query(pieces.lines, predicate="dwithin", distance=reach)
     i, j = i[i != j], j[i != j]
     u, v = pieces.b[i] - pieces.a[i], pieces.b[j] - pieces.a[j]
     lu, lv = np.hypot(*u.T), np.hypot(*v.T)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -43,7 +44,7 @@ class DrawnParts:
         """Numbers of the parts."""
         return np.flatnonzero(self.depth % 2 == 0)
 
-    @property
+    @cached_property
     def diameters(self) -> np.ndarray:  # type: ignore[type-arg]
         """(n,) of contours that are round, 0 for others, mm."""
         area, around = shapely.area(self.shapes), shapely.length(self.shapes)
@@ -133,7 +134,7 @@ def mark_findings(
         yield Finding("missing-mark", Severity.WARNING, "file", 0.0, 1.0, "", message)
         return
     strokes = np.array([_line(track) for track in marks], dtype=object)
-    on_cut = _hits(pieces.lines, strokes, "intersects")
+    on_cut = _hits(pieces.tree, strokes, "intersects")
     outer = parts.outer
     inside, holder = shapely.STRtree(parts.shapes[outer]).query(strokes, predicate="intersects")
     in_part = np.isin(np.arange(len(strokes)), inside)
