@@ -5,8 +5,7 @@ Every DXF can be read: damaged ones are mended as far as they go, and what was m
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,9 @@ APPLICATION = "GRIDSHELL"
 
 SAGITTA = 0.01
 """Between an arc and the lines it is checked as, mm."""
+
+_LARGEST = 1e8
+"""Coordinates beyond 100 km are no drawing, mm."""
 
 DRAWN = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "SPLINE", "ELLIPSE"}
 """Entities that are lines."""
@@ -155,11 +157,9 @@ def _track(entity: DXFGraphic) -> Track | None:
         points, closed = _points(entity)
     except _FAULTS:
         return None
-    if len(points) < 1 or not np.isfinite(points).all():
+    if len(points) < 1 or not (np.abs(points) <= _LARGEST).all():
         return None
-    diameter = 2.0 * abs(float(entity.dxf.radius)) if isinstance(entity, Circle) else 0.0
-    if entity.dxftype() == "ARC":
-        diameter = 0.0
+    diameter = 2.0 * abs(float(entity.dxf.get("radius", 0.0))) if entity.dxftype() == "CIRCLE" else 0.0
     layer = str(entity.dxf.get("layer", "0"))
     return Track(entity_name(entity), layer, points, closed, mark_of(entity), diameter)
 
@@ -177,9 +177,21 @@ def _points(entity: Any) -> tuple[Floats, bool]:
             [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
         ).reshape(-1, 3)
         return flattened(rows, closed=bool(entity.is_closed)), bool(entity.is_closed)
+    if flat and isinstance(entity, Circle):
+        x, y, r = *entity.dxf.center.vec2, float(entity.dxf.radius)
+        if entity.dxftype() == "CIRCLE":
+            return flattened(np.array([[x - r, y, 1.0], [x + r, y, 1.0]]), closed=True), True
+        first, last = entity.start_point, entity.end_point
+        sweep = np.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)
+        rows = np.array([[first.x, first.y, np.tan(sweep / 4.0)], [last.x, last.y, 0.0]])
+        return flattened(rows, closed=False), False
     line = curves.make_path(entity)
-    points = np.array([(p.x, p.y) for p in line.flattening(SAGITTA)]).reshape(-1, 2)
-    return points, bool(line.is_closed)
+    corners = np.array([(p.x, p.y) for p in line.control_vertices()]).reshape(-1, 2)
+    size = float(np.ptp(corners, axis=0).max(initial=0.0))
+    if not size <= _LARGEST:
+        return np.full((1, 2), np.nan), False
+    fine = max(SAGITTA, 1e-5 * size)
+    return np.array([(p.x, p.y) for p in line.flattening(fine)]).reshape(-1, 2), line.is_closed
 
 
 def flattened(rows: Floats, *, closed: bool) -> Floats:
@@ -213,8 +225,3 @@ def _on_arc(start: Floats, chord: Floats, sweep: Floats, share: Floats) -> Float
     c, s = np.cos(turn), np.sin(turn)
     x, y = chord.T
     return start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1)
-
-
-def renamed(tracks: Iterable[Track], layer: str) -> tuple[Track, ...]:
-    """The same lines on another layer."""
-    return tuple(replace(track, layer=layer) for track in tracks)

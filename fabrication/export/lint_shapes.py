@@ -96,7 +96,7 @@ def place_findings(
     if room and len(parts.shapes):
         sheet = shapely.union_all([s if s.is_valid else s.convex_hull for s in room])
         held = shapely.covers(sheet.buffer(_TOUCH), parts.shapes)
-        for k in np.flatnonzero(~held & (parts.depth == 0)).tolist():
+        for k in np.flatnonzero(~held & (parts.depth == 0) & (parts.diameters == 0.0)).tolist():
             corners = shapely.points(parts.contours[k].points)
             over = float(shapely.distance(corners, sheet).max())
             name = parts.contours[k].name
