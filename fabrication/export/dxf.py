@@ -34,6 +34,7 @@ from fabrication.nesting import NestedSheet, Placement
 from fabrication.parts import Label
 from fabrication.shapes import with_bulges
 from fabrication.shop import DxfVersion, Process
+from gridshell import SettingError
 from gridshell.arrays import Floats
 
 _COLOURS = {"cut": 1, "mark": 5, "text": 8, "sheet": 9, "drill": 3}
@@ -147,7 +148,8 @@ class _Writer:
     def document(self, nested: NestedSheet, title: str, below: str) -> Drawing:
         """One sheet."""
         version = self._process.version
-        document = new(version.value, units=units.MM)
+        oldest = version is DxfVersion.R12
+        document = new(version.value, units=0 if oldest else units.MM)
         document.appids.add(APPLICATION)
         for key, name in self._layer.items():
             if name not in document.layers:
@@ -156,7 +158,7 @@ class _Writer:
         sheet = nested.sheet
         corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
         outer = [self._line(space, corners * (sheet.length, sheet.width), "sheet", closed=True)]
-        if version is DxfVersion.R12:
+        if oldest:
             title += "  |  all lengths in mm"
         outer += self._texts(space, nested, title, below)
         for placement in nested.placements:
@@ -206,6 +208,14 @@ class _Writer:
         contour = self._line(space, rows, "cut", closed=True)
         contour.set_xdata(APPLICATION, [(1000, part.mark)])
         for x, y, diameter in part.circles.tolist():
+            if not diameter > 2.0 * away:
+                raise SettingError(
+                    "The kerf leaves nothing of a hole",
+                    where=part.mark,
+                    value=f"{diameter:g} mm",
+                    limit=f"more than the kerf, {2.0 * away:g} mm",
+                    advice="larger holes, or drill them on a layer of their own",
+                )
             centre = (x + placement.x, y + placement.y)
             attributes = {"layer": self._layer["drill"]}
             hole = space.add_circle(centre, diameter / 2.0 - away, dxfattribs=attributes)

@@ -50,6 +50,8 @@ def lint_dxf(
     ------
     FileError
         When the file is missing or is no DXF.
+    SettingError
+        When *parts* cannot be cut with the kerf of *process*.
     """
     process = Process() if process is None else process
     content = read_content(path)

@@ -11,6 +11,7 @@ import shapely
 from fabrication.export.dxf_content import flattened
 from fabrication.export.lint_shapes import DrawnParts
 from fabrication.finding import Finding, Severity
+from fabrication.kerf import moved_out
 from fabrication.nesting import SheetPart
 from fabrication.shapes import with_bulges
 from gridshell.arrays import Floats
@@ -30,6 +31,11 @@ def part_findings(
     ----------
     drawn : parts with marks are found by them; in a drawing without any, by their size.
     offset : how far outside its part a line is drawn, mm.
+
+    Raises
+    ------
+    SettingError
+        When the kerf leaves nothing of a part's cuts.
     """
     outer = [k for k in drawn.outer.tolist() if _is_part(drawn, k)]
     found = np.array([_sizes(drawn.shapes[k]) for k in outer]).reshape(-1, 2)
@@ -58,8 +64,8 @@ def _is_part(drawn: DrawnParts, k: int) -> bool:
 
 
 def _shape(part: SheetPart, offset: float) -> shapely.Polygon:
-    shape = shapely.Polygon(flattened(with_bulges(part.outline), closed=True))
-    return shape.buffer(offset, join_style="mitre") if offset else shape
+    rows = moved_out(part.outline, offset)
+    return shapely.Polygon(flattened(with_bulges(rows), closed=True))
 
 
 def _sizes(shape: shapely.Geometry) -> Floats:
