@@ -149,7 +149,8 @@ class _Writer:
         """One sheet."""
         version = self._process.version
         oldest = version is DxfVersion.R12
-        document = new(version.value, units=0 if oldest else units.MM)
+        document = new("R2000" if oldest else version.value, units=units.MM)
+        document.dxfversion = version.value
         document.appids.add(APPLICATION)
         for key, name in self._layer.items():
             if name not in document.layers:

@@ -21,14 +21,12 @@ from ezdxf.entities.polyline import Polyline
 from ezdxf.filemanagement import readfile
 from ezdxf.lldxf.const import DXFError
 
+from fabrication.flattening import SAGITTA, flattened
 from gridshell import FileError
 from gridshell.arrays import Floats
 
 APPLICATION = "GRIDSHELL"
 """Whose extended data hold the marks of parts."""
-
-SAGITTA = 0.01
-"""Between an arc and the lines it is checked as, mm."""
 
 _LARGEST = 1e8
 """Coordinates beyond 100 km are no drawing, mm."""
@@ -192,36 +190,3 @@ def _points(entity: Any) -> tuple[Floats, bool]:
         return np.full((1, 2), np.nan), False
     fine = max(SAGITTA, 1e-5 * size)
     return np.array([(p.x, p.y) for p in line.flattening(fine)]).reshape(-1, 2), line.is_closed
-
-
-def flattened(rows: Floats, *, closed: bool) -> Floats:
-    """(n, 2) points of a line with bulges (k, 3); closed ones begin again with the first."""
-    if closed and len(rows):
-        rows = np.concatenate([rows, rows[:1]])
-    bulge = rows[:-1, 2]
-    if not bulge.any():
-        return rows[:, :2]
-    start, chord = rows[:-1, :2], np.diff(rows[:, :2], axis=0)
-    length = np.hypot(*chord.T)
-    sweep = 4.0 * np.arctan(bulge)
-    curved = (np.abs(sweep) > 0.0) & (length > 0.0)
-    radius = np.where(curved, length / (2.0 * np.abs(np.sin(sweep / 2.0)) + 1e-300), 1.0)
-    step = 2.0 * np.arccos(np.clip(1.0 - SAGITTA / radius, -1.0, 1.0))
-    count = np.where(curved, np.ceil(np.abs(sweep) / np.maximum(step, 0.02)), 1).astype(int)
-    first = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
-    share = place / count[first]
-    turned = np.where(curved, sweep, 0.0)[first]
-    return np.concatenate([_on_arc(start[first], chord[first], turned, share), rows[-1:, :2]])
-
-
-def _on_arc(start: Floats, chord: Floats, sweep: Floats, share: Floats) -> Floats:
-    """(n, 2) points at *share* of arcs with a chord and a sweep; on the chord where it is 0."""
-    half = sweep / 2.0
-    straight = np.abs(half) < 1e-12
-    safe = np.where(straight, 1.0, np.sin(half))
-    reach = np.where(straight, share, np.sin(share * half) / safe)
-    turn = np.where(straight, 0.0, (share - 1.0) * half)
-    c, s = np.cos(turn), np.sin(turn)
-    x, y = chord.T
-    return start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1)

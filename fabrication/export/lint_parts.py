@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely
 
-from fabrication.export.dxf_content import flattened
+from fabrication.flattening import flattened
 from fabrication.export.lint_shapes import DrawnParts
 from fabrication.finding import Finding, Severity
 from fabrication.kerf import moved_out

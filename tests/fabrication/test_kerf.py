@@ -6,7 +6,7 @@ from shapely import Polygon
 
 import gridshell as gs
 from fabrication.cut import Edge, Floor, Relief, Slot, outline
-from fabrication.export.dxf_content import flattened
+from fabrication.flattening import flattened
 from fabrication.kerf import moved_out
 from fabrication.outlines import outline_area
 from fabrication.shapes import circle, with_bulges
