@@ -40,4 +40,4 @@ def _on_arc(start: Floats, chord: Floats, sweep: Floats, share: Floats) -> Float
     turn = np.where(straight, 0.0, (share - 1.0) * half)
     c, s = np.cos(turn), np.sin(turn)
     x, y = chord.T
-    return start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1)
+    return np.asarray(start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1))

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from fabrication.shop import Process
 
 
+_SHOWN = 3
+"""Findings of one kind that are printed one by one."""
+
+
 class By(StrEnum):
     """Processes by their name on the command line."""
 
@@ -26,6 +30,10 @@ class By(StrEnum):
 
 def lint(
     files: Annotated[list[Path], typer.Argument(metavar="FILE.dxf...", help="Cutting files.")],
+    layer: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=NAME", help="A shop's name for CUT, MARK, TEXT, SHEET or DRILL."),
+    ] = None,
     process: Annotated[
         By | None, typer.Option(help="Look for what this process cannot cut, too.")
     ] = None,
@@ -46,7 +54,7 @@ def lint(
 
     if thickness is not None and process is None:
         raise typer.BadParameter("a thickness says something with --process only")
-    found = _found(files, process, thickness or 0.0)
+    found = _found(files, _process(process, thickness or 0.0, layer or []))
     if report is not None:
         _write(report, found)
     _print(found, quiet)
@@ -54,13 +62,27 @@ def lint(
         raise typer.Exit(1)
 
 
-def _found(
-    files: Sequence[Path], by: By | None, thickness: float
-) -> dict[Path, tuple[Finding, ...]]:
-    from fabrication.export.dxf_lint import lint_dxf
-    from fabrication.shop import Cutting, preset
+def _process(by: By | None, thickness: float, layer: Sequence[str]) -> Process:
+    from dataclasses import replace
 
-    process: Process | None = None if by is None else preset(Cutting(by.value), thickness)
+    from fabrication.shop import Cutting, Layers, Process, preset
+
+    names = {}
+    for pair in layer:
+        key, _, name = pair.partition("=")
+        if key not in ("CUT", "MARK", "TEXT", "SHEET", "DRILL") or not name:
+            raise typer.BadParameter(f"{pair!r} is not like CUT=0_CUT", param_hint="--layer")
+        names[key.lower()] = name
+    usual = Process() if by is None else preset(Cutting(by.value), thickness)
+    return replace(usual, layers=Layers(**names))
+
+
+def _found(files: Sequence[Path], process: Process) -> dict[Path, tuple[Finding, ...]]:
+    import logging
+
+    from fabrication.export.dxf_lint import lint_dxf
+
+    logging.getLogger("ezdxf").addHandler(logging.NullHandler())
     return {path: lint_dxf(path, process) for path in files}
 
 
@@ -86,7 +108,7 @@ def _write(report: Path, found: Mapping[Path, tuple[Finding, ...]]) -> None:
 
 
 def _print(found: Mapping[Path, tuple[Finding, ...]], quiet: bool) -> None:
-    """One line per finding below its file; with *quiet*, errors only."""
+    """The first findings of each kind below their file; with *quiet*, errors only."""
     from rich.console import Console
     from rich.markup import escape
 
@@ -100,9 +122,12 @@ def _print(found: Mapping[Path, tuple[Finding, ...]], quiet: bool) -> None:
             errors = sum(f.severity is Severity.ERROR for f in findings)
             count = f"{errors} errors, {len(findings)} findings" if findings else "no faults"
             console.print(f"[bold]{escape(str(path))}[/bold]  {count}")
+        kinds: dict[tuple[str, str], list[Finding]] = {}
         for finding in told:
-            severity = finding.severity.value
-            colour = colours[severity]
-            console.print(
-                f"  [{colour}]{severity}[/] {finding.code}: {escape(finding.message)}"
-            )
+            kinds.setdefault((finding.severity.value, finding.code), []).append(finding)
+        for (severity, code), same in kinds.items():
+            for finding in same[:_SHOWN]:
+                line = f"  [{colours[severity]}]{severity}[/] {code}: {escape(finding.message)}"
+                console.print(line)
+            if len(same) > _SHOWN:
+                console.print(f"    and {len(same) - _SHOWN} more like this; --report has them all")

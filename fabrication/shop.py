@@ -12,6 +12,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import Enum
+from functools import cached_property
 from string import Formatter
 
 from fabrication.cut import SQUARE, Floor, Relief
@@ -82,8 +83,12 @@ class Layers:
 
     def key(self, name: str) -> str | None:
         """What lies on the layer *name*, upper and lower case alike; None for others' layers."""
-        known = {given.casefold(): key for key, given in reversed(self.named.items())}
-        return known.get(name.casefold())
+        return self._keys.get(name.casefold())
+
+    @cached_property
+    def _keys(self) -> dict[str, str]:
+        found = {name.casefold(): key for key, name in self.named.items()}
+        return found | {self.cut.casefold(): "cut"}
 
 
 @dataclass(frozen=True)
@@ -229,7 +234,7 @@ _PRESETS = {
     Cutting.ROUTER: _Preset(1.0, 1.0, 1.0, 0.0, tool=6.0, kerf=6.0, floor=Floor.DOGBONE),
     Cutting.SAW: _Preset(1.0, 1.0, 1.0, 0.0, tool=3.0, kerf=3.0, bevels=True),
 }
-"""Laser and waterjet: shops' guides. Router: a 6 mm cutter. Saw: a 3 mm blade; holes are drilled."""
+"""Laser and waterjet: shops' guides. Router: a 6 mm cutter. Saw: a 3 mm blade, holes drilled."""
 
 
 def preset(cutting: Cutting, thickness: float = 0.0, *, tool: float | None = None) -> Process:

@@ -1,4 +1,4 @@
-"""What a shop's process cannot cut of flat parts. Spacing at one thickness is told by ``checks``."""
+"""What a shop's process cannot cut of flat parts; spacing at one thickness is in ``checks``."""
 
 from __future__ import annotations
 

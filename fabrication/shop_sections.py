@@ -34,7 +34,7 @@ class ShopSection(Section):
     ] = False
     bed: Annotated[tuple[Size, Size] | None, Field(description="any size")] = None
     layers: LayersSection = LayersSection()
-    files: Annotated[
-        str, Field(description="keys: name, material, thickness, prefix, number")
-    ] = "{prefix}-{number}"
+    files: Annotated[str, Field(description="keys: name, material, thickness, prefix, number")] = (
+        "{prefix}-{number}"
+    )
     version: Literal["R12", "R2000", "R2010", "R2013"] = "R2010"

@@ -13,7 +13,6 @@ import numpy as np
 from ezdxf import path as curves
 from ezdxf import recover
 from ezdxf.document import Drawing
-from ezdxf.entities.circle import Circle
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.line import Line
 from ezdxf.entities.lwpolyline import LWPolyline
@@ -42,8 +41,9 @@ _FAULTS = (
     StopIteration,
     TypeError,
     AttributeError,
+    AssertionError,
     ArithmeticError,
-    RecursionError,
+    RuntimeError,
 )
 """What reading a file that is no sound DXF can end with."""
 
@@ -157,9 +157,23 @@ def _track(entity: DXFGraphic) -> Track | None:
         return None
     if len(points) < 1 or not (np.abs(points) <= _LARGEST).all():
         return None
-    diameter = 2.0 * abs(float(entity.dxf.get("radius", 0.0))) if entity.dxftype() == "CIRCLE" else 0.0
+    diameter = (
+        2.0 * abs(float(entity.dxf.get("radius", 0.0))) if entity.dxftype() == "CIRCLE" else 0.0
+    )
     layer = str(entity.dxf.get("layer", "0"))
     return Track(entity_name(entity), layer, points, closed, mark_of(entity), diameter)
+
+
+def _round(entity: Any) -> tuple[Floats, bool]:
+    """A circle as two half ones, or an arc."""
+    if entity.dxftype() == "CIRCLE":
+        centre, radius = entity.dxf.center, float(entity.dxf.radius)
+        x, y = float(centre.x), float(centre.y)
+        return flattened(np.array([[x - radius, y, 1.0], [x + radius, y, 1.0]]), closed=True), True
+    first, last = entity.start_point, entity.end_point
+    sweep = np.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)
+    rows = np.array([[first.x, first.y, np.tan(sweep / 4.0)], [last.x, last.y, 0.0]])
+    return flattened(rows, closed=False), False
 
 
 def _points(entity: Any) -> tuple[Floats, bool]:
@@ -175,14 +189,8 @@ def _points(entity: Any) -> tuple[Floats, bool]:
             [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
         ).reshape(-1, 3)
         return flattened(rows, closed=bool(entity.is_closed)), bool(entity.is_closed)
-    if flat and isinstance(entity, Circle):
-        x, y, r = *entity.dxf.center.vec2, float(entity.dxf.radius)
-        if entity.dxftype() == "CIRCLE":
-            return flattened(np.array([[x - r, y, 1.0], [x + r, y, 1.0]]), closed=True), True
-        first, last = entity.start_point, entity.end_point
-        sweep = np.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)
-        rows = np.array([[first.x, first.y, np.tan(sweep / 4.0)], [last.x, last.y, 0.0]])
-        return flattened(rows, closed=False), False
+    if flat and entity.dxftype() in ("CIRCLE", "ARC"):
+        return _round(entity)
     line = curves.make_path(entity)
     corners = np.array([(p.x, p.y) for p in line.control_vertices()]).reshape(-1, 2)
     size = float(np.ptp(corners, axis=0).max(initial=0.0))

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from fabrication.export.dxf_content import Content, Track, read_content
 from fabrication.export.lint_contours import (
     Contour,
@@ -43,8 +45,8 @@ def lint_dxf(
     Returns
     -------
     Findings about the file, its layers and entities, its lines, its parts and its marks, in this
-    order. In a file with nothing on the cutting layer everything that lies on no known layer is
-    looked at as if it were to be cut.
+    order. In a file with nothing on the cutting layer, the unknown layer with the longest lines is
+    looked at in its place.
 
     Raises
     ------
@@ -68,12 +70,17 @@ class _Roles:
     def __init__(self, content: Content, layers: Layers) -> None:
         self._tracks = content.tracks
         names = {str(e.dxf.get("layer", "0")) for e in content.entities}
-        keys = {name: layers.key(name) for name in names}
-        alone = not {"cut", "drill"} & set(keys.values())
-        self._keys = {n: "cut" if k is None and alone else k for n, k in keys.items()}
+        self._keys = {name: layers.key(name) for name in names}
+        if not {"cut", "drill"} & set(self._keys.values()):
+            lengths = {name: 0.0 for name in names if self._keys[name] is None}
+            for track in self._tracks:
+                if track.layer in lengths:
+                    lengths[track.layer] += float(np.hypot(*np.diff(track.points, axis=0).T).sum())
+            if lengths:
+                self._keys[max(lengths, key=lambda name: lengths[name])] = "cut"
 
     def role(self, layer: str) -> str | None:
-        """Key of a layer by its name; layers nobody knows are cut where there is no other."""
+        """Key of a layer by its name."""
         return self._keys.get(layer)
 
     def on(self, *keys: str) -> tuple[Track, ...]:

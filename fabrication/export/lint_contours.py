@@ -114,9 +114,10 @@ def contours(tracks: Sequence[Track]) -> tuple[Contour, ...]:
             at[end].append((number, side))
     used: set[int] = set()
     starts = [entry for entries in at.values() if len(entries) != 2 for entry in entries]
-    for first in (*starts, *((number, 0) for number in range(len(loose)))):
-        if first[0] not in used:
-            done.append(_walk(first, loose, point, at, used))
+    rings = ((number, 0) for number in range(len(loose)))
+    done.extend(
+        _walk(first, loose, point, at, used) for first in (*starts, *rings) if first[0] not in used
+    )
     return tuple(done)
 
 
@@ -169,7 +170,7 @@ def open_findings(found: Sequence[Contour]) -> Iterator[Finding]:
         return
     ends = np.concatenate([contour.points[[0, -1]] for contour in loose])
     tree = KDTree(ends)
-    near, other = tree.query(ends, k=min(2, len(ends)))
+    near, _ = tree.query(ends, k=min(2, len(ends)))
     near = near[:, -1].reshape(-1, 2).max(axis=1)
     for contour, gap in zip(loose, near.tolist(), strict=True):
         x, y = contour.points[0].tolist()

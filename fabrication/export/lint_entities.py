@@ -1,4 +1,4 @@
-"""Faults of a DXF file and its entities: units, layers, kinds, heights; no geometry in the plane."""
+"""Faults of a DXF file and its entities: units, layers, kinds, heights."""
 
 from __future__ import annotations
 
@@ -153,7 +153,9 @@ def _hidden(document: Drawing, name: str, many: str) -> Iterator[Finding]:
         )
 
 
-def entity_findings(content: Content, layers: Layers, key: Callable[[str], str | None]) -> Iterator[Finding]:
+def entity_findings(
+    content: Content, layers: Layers, key: Callable[[str], str | None]
+) -> Iterator[Finding]:
     """Entities on the cutting layer that are no flat lines.
 
     Parameters

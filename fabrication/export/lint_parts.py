@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely
 
-from fabrication.flattening import flattened
 from fabrication.export.lint_shapes import DrawnParts
 from fabrication.finding import Finding, Severity
+from fabrication.flattening import flattened
 from fabrication.kerf import moved_out
 from fabrication.nesting import SheetPart
 from fabrication.shapes import with_bulges

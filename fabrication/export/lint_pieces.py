@@ -15,7 +15,7 @@ import shapely
 
 from fabrication.export.lint_contours import JOINED, Contour
 from fabrication.finding import Finding, Severity
-from gridshell.arrays import Mask, Floats, Indices
+from gridshell.arrays import Floats, Indices, Mask
 
 _SAME = 0.02
 """Overlaps shorter than this are rounding, mm."""
@@ -48,7 +48,7 @@ class Pieces:
         return shapely.STRtree(self.lines)
 
     @cached_property
-    def lines(self) -> np.ndarray:  # type: ignore[type-arg]
+    def lines(self) -> np.ndarray:
         """(n,) shapely lines."""
         return np.asarray(shapely.linestrings(np.stack([self.a, self.b], axis=1)))
 

@@ -14,7 +14,7 @@ from fabrication.export.dxf_content import Track
 from fabrication.export.lint_contours import Contour, polygon
 from fabrication.export.lint_pieces import Pieces
 from fabrication.finding import Finding, Severity
-from gridshell.arrays import Mask, Indices
+from gridshell.arrays import Indices, Mask
 
 _TOUCH = 1e-3
 """How far a part may lie over the edge of its sheet: rounding, mm."""
@@ -35,7 +35,7 @@ class DrawnParts:
     """
 
     contours: tuple[Contour, ...]
-    shapes: np.ndarray  # type: ignore[type-arg]
+    shapes: np.ndarray
     depth: Indices
     part: Indices
 
@@ -45,7 +45,7 @@ class DrawnParts:
         return np.flatnonzero(self.depth % 2 == 0)
 
     @cached_property
-    def diameters(self) -> np.ndarray:  # type: ignore[type-arg]
+    def diameters(self) -> np.ndarray:
         """(n,) of contours that are round, 0 for others, mm."""
         area, around = shapely.area(self.shapes), shapely.length(self.shapes)
         rounded = 4.0 * np.pi * area > _ROUND * around**2
@@ -120,7 +120,10 @@ def _is_small(parts: DrawnParts, k: int) -> bool:
 
 
 def mark_findings(
-    parts: DrawnParts, pieces: Pieces, marks: Sequence[Track], doubles: Sequence[tuple[Track, Track]]
+    parts: DrawnParts,
+    pieces: Pieces,
+    marks: Sequence[Track],
+    doubles: Sequence[tuple[Track, Track]],
 ) -> Iterator[Finding]:
     """Strokes to engrave that cross a cut, lie in no part, or are drawn twice; parts without."""
     for _, double in doubles:
@@ -159,7 +162,7 @@ def _line(track: Track) -> shapely.Geometry:
     return shapely.LineString(track.points)
 
 
-def _hits(tree: shapely.STRtree, lines: np.ndarray, predicate: str) -> Mask:  # type: ignore[type-arg]
+def _hits(tree: shapely.STRtree, lines: np.ndarray, predicate: str) -> Mask:
     found, _ = tree.query(lines, predicate=predicate)
     return np.asarray(np.isin(np.arange(len(lines)), found), dtype=bool)
 

@@ -126,9 +126,11 @@ def test_lines_lie_half_a_kerf_outside(nested, tmp_path):
         np.testing.assert_allclose(high - low, (part.length + 0.4, part.width + 0.4), atol=1e-9)
         np.testing.assert_allclose(sorted(drawn.circles[:, 2]), [8.6, 11.6])
     first = Polygon(read_dxf(path)[0].outline[:, :2])
-    assert first.symmetric_difference(
-        Polygon(PARTS[0].outline).buffer(0.2, join_style="mitre")
-    ).area == pytest.approx(0.0, abs=1.0) or first.area > PARTS[0].area
+    assert (
+        first.symmetric_difference(Polygon(PARTS[0].outline).buffer(0.2, join_style="mitre")).area
+        == pytest.approx(0.0, abs=1.0)
+        or first.area > PARTS[0].area
+    )
 
 
 def test_a_kerf_alone_changes_nothing(nested, tmp_path):
