@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from fabrication.lint_cli import lint
 from fabrication.optimize_cli import optimize
 from fabrication.remesh_cli import remesh
 
@@ -34,6 +35,7 @@ app = typer.Typer(
 
 app.command()(remesh)
 app.command()(optimize)
+app.command()(lint)
 
 _STAGES = 9
 

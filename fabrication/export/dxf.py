@@ -1,43 +1,44 @@
-"""DXF cutting sheets: the only module that imports ezdxf.
+"""DXF cutting sheets.
 
-Layers: CUT holds one closed outline per part and nothing else; MARK holds single-stroke text to
-engrave; TEXT is for people: the title above the sheet and the marks of each row left of it, outside
-the sheet so that a machine fed with every layer engraves nothing twice; SHEET is the outline of the
-raw sheet. Units are mm, the format is R2010; arcs are bulges, other curves lines. Part strip
-coordinates (0, 0) lie at the outline's first corner.
+Layers: CUT holds one closed outline per part, its round holes, and nothing else; MARK holds
+single-stroke text to engrave; TEXT is for people: the title above the sheet and the marks of each
+row left of it, outside the sheet so that a machine fed with every layer engraves nothing twice;
+SHEET is the outline of the raw sheet. Units are mm, the format is R2010; arcs are bulges, other
+curves lines. Part strip coordinates (0, 0) lie at the outline's first corner. A shop's process
+names the layers and the files otherwise, gives holes a layer of their own, and moves the lines out
+by half a kerf.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from ezdxf import bbox, units
 from ezdxf.document import Drawing
-from ezdxf.entities.circle import Circle
-from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.dxfgfx import DXFGraphic
-from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.entities.text import Text
 from ezdxf.enums import TextEntityAlignment
-from ezdxf.filemanagement import new, readfile
+from ezdxf.filemanagement import new
 from ezdxf.layouts.layout import Modelspace
-from ezdxf.lldxf.const import DXFError
 from HersheyFonts import HersheyFonts
 
 from fabrication.errors import OutputError
+from fabrication.export.dxf_content import APPLICATION
+from fabrication.export.dxf_reader import DxfPart as DxfPart
+from fabrication.export.dxf_reader import read_dxf as read_dxf
+from fabrication.kerf import moved_out
 from fabrication.nesting import NestedSheet, Placement
 from fabrication.parts import Label
-from gridshell import FileError
+from fabrication.shapes import with_bulges
+from fabrication.shop import DxfVersion, Process
+from gridshell import SettingError
 from gridshell.arrays import Floats
 
-CUT, MARK, TEXT, SHEET = "CUT", "MARK", "TEXT", "SHEET"
-_LAYERS = {CUT: 1, MARK: 5, TEXT: 8, SHEET: 9}
-_APPLICATION = "GRIDSHELL"
+_COLOURS = {"cut": 1, "mark": 5, "text": 8, "sheet": 9, "drill": 3}
+"""Of the layers, by what lies on them."""
 
 _MANY = 12
 """Marks of a row that are told one by one."""
@@ -51,6 +52,7 @@ def write_dxf(
     material: str = "",
     prefix: str = "sheet",
     alike: Mapping[str, str] | None = None,
+    process: Process | None = None,
 ) -> list[Path]:
     """Write ``sheet-01.dxf``, ... into *folder* and return their paths.
 
@@ -59,12 +61,16 @@ def write_dxf(
     name, material : of the project and of the sheets, for the title; left out where empty.
     prefix : of the files' names: what the sheets hold.
     alike : group of every mark; how many parts of a group lie on a sheet is then told below it.
+    process : names of layers and files, format, and whether lines are moved out by half a kerf.
 
     Raises
     ------
     OutputError
         When a file cannot be written.
+    SettingError
+        When the kerf leaves nothing of a cut.
     """
+    process = Process() if process is None else process
     folder = Path(folder)
     font = _StrokeFont()
     digits = max(2, len(str(len(sheets))))
@@ -72,9 +78,19 @@ def write_dxf(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for nested in sheets:
-            path = folder / f"{prefix}-{nested.number:0{digits}d}.dxf"
+            number = f"{nested.number:0{digits}d}"
+            path = folder / (
+                process.files.named(
+                    name=name,
+                    material=material,
+                    thickness=_thickness(nested),
+                    prefix=prefix,
+                    number=number,
+                )
+                + ".dxf"
+            )
             title = _title(nested, len(sheets), name, material)
-            _document(nested, title, _quantities(nested, alike), font).saveas(path)
+            _Writer(process, font).document(nested, title, _quantities(nested, alike)).saveas(path)
             paths.append(path)
     except OSError as error:
         raise OutputError(
@@ -86,7 +102,7 @@ def write_dxf(
 def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
     """One line: project, sheet of how many, material and thickness, size of the sheet, parts."""
     sheet, parts = nested.sheet, [placement.part for placement in nested.placements]
-    thickness = " / ".join(f"{t:g} mm" for t in sorted({part.thickness for part in parts}))
+    thickness = _thickness(nested)
     pieces = (
         " ".join(name.split()),
         f"sheet {nested.number} of {sheets}",
@@ -95,6 +111,12 @@ def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
         f"{len(parts)} {'part' if len(parts) == 1 else 'parts'}",
     )
     return "  |  ".join(piece for piece in pieces if piece)
+
+
+def _thickness(nested: NestedSheet) -> str:
+    """Of the sheet's parts: "2.5 mm"."""
+    sizes = sorted({placement.part.thickness for placement in nested.placements})
+    return " / ".join(f"{size:g} mm" for size in sizes)
 
 
 def _quantities(nested: NestedSheet, alike: Mapping[str, str] | None) -> str:
@@ -109,47 +131,6 @@ def _quantities(nested: NestedSheet, alike: Mapping[str, str] | None) -> str:
     return "alike: " + ", ".join(several) + (f"; single: {single}" if single else "")
 
 
-def _document(nested: NestedSheet, title: str, below: str, font: _StrokeFont) -> Drawing:
-    document = new("R2010", units=units.MM)
-    document.appids.add(_APPLICATION)
-    for name, colour in _LAYERS.items():
-        document.layers.add(name, color=colour)
-    space = document.modelspace()
-    sheet = nested.sheet
-    corners = [(0.0, 0.0), (sheet.length, 0.0), (sheet.length, sheet.width), (0.0, sheet.width)]
-    outer: list[DXFGraphic] = [
-        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": SHEET})
-    ]
-    outer += _texts(space, nested, title, below)
-    for placement in nested.placements:
-        _draw(space, placement, font)
-    extents = bbox.extents(outer)
-    space.reset_extents(extents.extmin, extents.extmax)
-    return document
-
-
-def _texts(space: Modelspace, nested: NestedSheet, title: str, below: str) -> list[Text]:
-    """The title above the sheet, and left of every row the marks of its parts in their order."""
-    height = nested.sheet.width / 40.0
-    rows: dict[float, list[Placement]] = {}
-    for placement in nested.placements:
-        rows.setdefault(placement.y, []).append(placement)
-    above = space.add_text(title, height=height, dxfattribs={"layer": TEXT})
-    above.set_placement((0.0, nested.sheet.width + height), align=TextEntityAlignment.LEFT)
-    texts = [above]
-    if below:
-        under = space.add_text(below, height=height / 2.0, dxfattribs={"layer": TEXT})
-        under.set_placement((0.0, -height), align=TextEntityAlignment.LEFT)
-        texts.append(under)
-    for y, row in rows.items():
-        width = row[0].part.width
-        marks = _listed([p.part.mark for p in sorted(row, key=lambda p: p.x)])
-        beside = space.add_text(marks, height=min(height, width / 2.0), dxfattribs={"layer": TEXT})
-        beside.set_placement((-height, y + width / 2.0), align=TextEntityAlignment.MIDDLE_RIGHT)
-        texts.append(beside)
-    return texts
-
-
 def _listed(marks: Sequence[str]) -> str:
     """All *marks* of a row, or the first, the last and how many."""
     if len(marks) <= _MANY:
@@ -157,25 +138,92 @@ def _listed(marks: Sequence[str]) -> str:
     return f"{marks[0]}, {marks[1]} ... {marks[-1]} ({len(marks)})"
 
 
-def _draw(space: Modelspace, placement: Placement, font: _StrokeFont) -> None:
-    part, offset = placement.part, np.array([placement.x, placement.y])
-    rows = np.array(part.outline)
-    rows[:, :2] += offset
-    contour = space.add_lwpolyline(
-        rows.tolist(),
-        format="xy" if rows.shape[1] == 2 else "xyb",
-        close=True,
-        dxfattribs={"layer": CUT},
-    )
-    contour.set_xdata(_APPLICATION, [(1000, part.mark)])
-    for x, y, diameter in part.circles.tolist():
-        centre = (x + placement.x, y + placement.y)
-        hole = space.add_circle(centre, diameter / 2.0, dxfattribs={"layer": CUT})
-        hole.set_xdata(_APPLICATION, [(1000, part.mark)])
-    for label in part.labels:
-        for stroke in font.strokes(label):
-            points = (stroke + offset).tolist()
-            space.add_lwpolyline(points, dxfattribs={"layer": MARK})
+class _Writer:
+    """Draws sheets as a shop wants them."""
+
+    def __init__(self, process: Process, font: _StrokeFont) -> None:
+        self._process, self._font = process, font
+        self._layer = dict(process.layers.named)
+
+    def document(self, nested: NestedSheet, title: str, below: str) -> Drawing:
+        """One sheet."""
+        version = self._process.version
+        oldest = version is DxfVersion.R12
+        document = new("R2000" if oldest else version.value, units=units.MM)
+        document.dxfversion = version.value
+        document.appids.add(APPLICATION)
+        for key, name in self._layer.items():
+            if name not in document.layers:
+                document.layers.add(name, color=_COLOURS[key])
+        space = document.modelspace()
+        sheet = nested.sheet
+        corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+        outer = [self._line(space, corners * (sheet.length, sheet.width), "sheet", closed=True)]
+        if oldest:
+            title += "  |  all lengths in mm"
+        outer += self._texts(space, nested, title, below)
+        for placement in nested.placements:
+            self._draw(space, placement)
+        extents = bbox.extents(outer)
+        space.reset_extents(extents.extmin, extents.extmax)
+        return document
+
+    def _line(self, space: Modelspace, points: Floats, key: str, *, closed: bool) -> DXFGraphic:
+        """A polyline (k, 2), or (k, 3) with bulges, in the kind the format has."""
+        attributes, rows = {"layer": self._layer[key]}, with_bulges(points).tolist()
+        if self._process.version is DxfVersion.R12:
+            return space.add_polyline2d(rows, format="xyb", close=closed, dxfattribs=attributes)
+        return space.add_lwpolyline(rows, format="xyb", close=closed, dxfattribs=attributes)
+
+    def _texts(
+        self, space: Modelspace, nested: NestedSheet, title: str, below: str
+    ) -> list[DXFGraphic]:
+        """The title above the sheet, and left of every row the marks of its parts in order."""
+        height = nested.sheet.width / 40.0
+        rows: dict[float, list[Placement]] = {}
+        for placement in nested.placements:
+            rows.setdefault(placement.y, []).append(placement)
+        above = self._text(space, title, height)
+        above.set_placement((0.0, nested.sheet.width + height), align=TextEntityAlignment.LEFT)
+        texts: list[DXFGraphic] = [above]
+        if below:
+            under = self._text(space, below, height / 2.0)
+            under.set_placement((0.0, -height), align=TextEntityAlignment.LEFT)
+            texts.append(under)
+        for y, row in rows.items():
+            width = row[0].part.width
+            marks = _listed([p.part.mark for p in sorted(row, key=lambda p: p.x)])
+            beside = self._text(space, marks, min(height, width / 2.0))
+            beside.set_placement((-height, y + width / 2.0), align=TextEntityAlignment.MIDDLE_RIGHT)
+            texts.append(beside)
+        return texts
+
+    def _text(self, space: Modelspace, words: str, height: float) -> Text:
+        return space.add_text(words, height=height, dxfattribs={"layer": self._layer["text"]})
+
+    def _draw(self, space: Modelspace, placement: Placement) -> None:
+        part, away = placement.part, self._process.offset
+        offset = np.array([placement.x, placement.y])
+        rows = np.array(moved_out(part.outline, away))
+        rows[:, :2] += offset
+        contour = self._line(space, rows, "cut", closed=True)
+        contour.set_xdata(APPLICATION, [(1000, part.mark)])
+        for x, y, diameter in part.circles.tolist():
+            if not diameter > 2.0 * away:
+                raise SettingError(
+                    "The kerf leaves nothing of a hole",
+                    where=part.mark,
+                    value=f"{diameter:g} mm",
+                    limit=f"more than the kerf, {2.0 * away:g} mm",
+                    advice="larger holes, or drill them on a layer of their own",
+                )
+            centre = (x + placement.x, y + placement.y)
+            attributes = {"layer": self._layer["drill"]}
+            hole = space.add_circle(centre, diameter / 2.0 - away, dxfattribs=attributes)
+            hole.set_xdata(APPLICATION, [(1000, part.mark)])
+        for label in part.labels:
+            for stroke in self._font.strokes(label):
+                self._line(space, stroke + offset, "mark", closed=False)
 
 
 class _StrokeFont:
@@ -202,78 +250,3 @@ class _StrokeFont:
         everything = np.concatenate(strokes)
         middle = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
         return [stroke - middle for stroke in strokes]
-
-
-@dataclass(frozen=True, eq=False)
-class DxfPart:
-    """What a sheet says of one part.
-
-    Parameters
-    ----------
-    mark : from the outline's extended data.
-    outline : (k, 2), or (k, 3) with bulges where it has arcs, mm, moved so that its first corner
-        is (0, 0).
-    circles : (m, 3) rows x, y, diameter of its round holes, in order of x, moved alike, mm.
-    """
-
-    mark: str
-    outline: Floats
-    circles: Floats = field(default_factory=lambda: np.zeros((0, 3)))
-
-
-def read_dxf(path: Path | str) -> tuple[DxfPart, ...]:
-    """Read the parts of a sheet back from the file.
-
-    Raises
-    ------
-    FileError
-        When the file is missing, is no DXF, is not in mm, or its cutting layer holds something
-        that is not a closed outline with a mark.
-    """
-    try:
-        document = readfile(path)
-    except (OSError, DXFError, ValueError, LookupError, StopIteration) as error:
-        raise FileError("The sheet cannot be read", where=str(path), value=str(error)) from None
-    if document.units != units.MM:
-        raise FileError("The sheet is not in mm", where=str(path), value=f"{document.units}")
-    contours: dict[str, Floats] = {}
-    holes: dict[str, list[tuple[float, float, float]]] = {}
-    for entity in document.modelspace().query(f'*[layer=="{CUT}"]'):
-        mark = _mark(path, entity)
-        if isinstance(entity, Circle):
-            x, y, _ = entity.dxf.center
-            holes.setdefault(mark, []).append((x, y, 2.0 * entity.dxf.radius))
-        else:
-            contours[mark] = _contour(path, entity)
-    if stray := sorted(holes.keys() - contours.keys()):
-        raise FileError("A hole lies in no part", where=f"{path}, {stray[0]}")
-    return tuple(_part(mark, contour, holes.get(mark, ())) for mark, contour in contours.items())
-
-
-def _part(mark: str, contour: Floats, holes: Sequence[tuple[float, float, float]]) -> DxfPart:
-    origin = np.r_[contour[0, :2], 0.0]
-    circles = np.array(sorted(holes)).reshape(-1, 3) - origin
-    outline = contour - origin
-    return DxfPart(mark, outline if outline[:, 2].any() else outline[:, :2], circles)
-
-
-def _mark(path: Path | str, entity: DXFEntity) -> str:
-    """The mark of the part that *entity* belongs to."""
-    closed = isinstance(entity, Circle) or (isinstance(entity, LWPolyline) and entity.closed)
-    if not (closed and entity.has_xdata(_APPLICATION)):
-        raise FileError(
-            "Something on the cutting layer is no closed outline with a mark",
-            where=f"{path}, {entity}",
-        )
-    marks = [str(tag.value) for tag in entity.get_xdata(_APPLICATION) if tag.code == 1000]
-    if not marks:
-        raise FileError("An outline is incomplete", where=f"{path}, {entity}")
-    return marks[0]
-
-
-def _contour(path: Path | str, entity: Any) -> Floats:
-    """(k, 3) corners with bulges."""
-    points = np.array(entity.get_points("xyb"), dtype=np.float64)
-    if len(points) < 3:
-        raise FileError("An outline is incomplete", where=f"{path}, {entity}")
-    return points
