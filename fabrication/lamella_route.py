@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians
 
@@ -9,19 +10,23 @@ import gridshell as gs
 from fabrication.assembling import Assembly, assembly_order
 from fabrication.checks import check
 from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_system
+from fabrication.finding import Finding
 from fabrication.flat_checks import Ground
 from fabrication.flat_state import FlatState, lay_flat
 from fabrication.joint_sections import JointSection
 from fabrication.joint_settings import joint_of
 from fabrication.jointed import Jointed
 from fabrication.lamella_sections import FlatSection
-from fabrication.lamella_stock import BarStock, bar_stock, other_sheets, strip_sheets
+from fabrication.lamella_stock import BarStock, SheetSet, bar_stock, other_sheets, strip_sheets
 from fabrication.lamella_system import LamellaSystem, Plans
-from fabrication.parts import parts_of
+from fabrication.parts import FlatPart, parts_of
 from fabrication.placing import keyed
 from fabrication.routes import Clock
 from fabrication.sections import ProfileSection, Project
 from fabrication.settings import profile_of, sheet_of
+from fabrication.shop import Process
+from fabrication.shop_checks import shop_findings
+from fabrication.shop_settings import process_of
 from fabrication.stock import Profile
 from fabrication.strength import bay_stress
 from fabrication.structures import Structure, structure
@@ -64,7 +69,9 @@ class LamellaRoute:
             bars = self._bars(whole)
             jointed = whole if bars is None else bars.applied(whole)
         with clock.stage("parts"):
-            parts = parts_of(jointed)
+            with keyed("shop"):
+                process = process_of(self.project.shop, profile)
+            parts = parts_of(jointed, process.relief)
             strips = strip_sheets(parts, self.project, profile, bars)
             others = tuple(other_sheets(jointed, self.project, bars))
             facade = self._facade(skin, jointed.design)
@@ -73,6 +80,7 @@ class LamellaRoute:
                 *jointed.findings,
                 *plans.findings,
                 *check(jointed.strips, parts, stress),
+                *self._shop_findings(process, parts, others),
             )
         return LamellaSystem(
             project=self.project,
@@ -84,6 +92,7 @@ class LamellaRoute:
             sheets=(strips, *others),
             facade=facade,
             plans=plans,
+            process=process,
             findings=findings,
         )
 
@@ -117,6 +126,20 @@ class LamellaRoute:
             return assembly_order(whole), None
         with keyed("flat"):
             return assembly_order(whole), _laid_flat(whole, flat)
+
+    def _shop_findings(
+        self, process: Process, parts: Sequence[FlatPart], others: Sequence[SheetSet]
+    ) -> tuple[Finding, ...]:
+        """What the shop of the project cannot cut; of equal connectors one is tried."""
+        if self.project.shop is None:
+            return ()
+        more = {
+            (part.labels[0].text if part.labels else part.mark): part
+            for own in others
+            for sheet in own.sheets
+            for part in (placement.part for placement in sheet.placements)
+        }
+        return shop_findings([*parts, *more.values()], process)
 
     def _facade(self, net: gs.DiagonalMesh, built: Structure) -> FacadeSystem | None:
         project = self.project

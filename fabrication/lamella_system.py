@@ -30,6 +30,7 @@ from fabrication.routes import (
     loop_findings,
 )
 from fabrication.sections import Project
+from fabrication.shop import Process
 from fabrication.strength import BayStress
 from fabrication.stress_checks import stress_section
 
@@ -74,6 +75,7 @@ class LamellaSystem:
     stress : of every bay.
     bars : None where strips are cut from sheets.
     sheets : of the strips first, then of connectors, splice plates and coupons.
+    process : how the shop cuts, and wants its files.
     """
 
     project: Project
@@ -85,6 +87,7 @@ class LamellaSystem:
     sheets: tuple[SheetSet, ...]
     facade: FacadeSystem | None
     plans: Plans
+    process: Process
     findings: Sequence[Finding]
 
     def write(self, draft: Path, cad: Kernel, clock: Clock) -> Written:
@@ -99,8 +102,8 @@ class LamellaSystem:
         with clock.stage("fit"):
             fitted = fit(jointed.strips, self.parts, jointed.connectors)
         with clock.stage("sheets"):
-            files = self._write_sheets(draft / "sheets")
-            drawn = [part for path in files for part in read_dxf(path)]
+            files, faults = self._write_sheets(draft / "sheets")
+            drawn = [part for path in files for part in read_dxf(path, self.process)]
             panels = (
                 []
                 if facade is None
@@ -117,7 +120,7 @@ class LamellaSystem:
             strips = [part for part in solid.parts if isinstance(part, StepPart)]
             prisms = [part for part in solid.parts if isinstance(part, StepPrism)]
             closed = asdict(compare(reference, self.parts, drawn, strips, prisms))
-            findings = lamella_loop_findings(closed, fitted)
+            findings = [*faults, *lamella_loop_findings(closed, fitted)]
             more: Report = {}
             if facade is not None:
                 glazed = facade.closure(net, reference.design, panels, prisms)
@@ -160,21 +163,27 @@ class LamellaSystem:
 
     # ---- files ---------------------------------------------------------------------------------
 
-    def _write_sheets(self, folder: Path) -> list[Path]:
-        """All sheets; the paths of those with strips."""
+    def _write_sheets(self, folder: Path) -> tuple[list[Path], list[Finding]]:
+        """Write all sheets; the paths of those with strips, and faults found in any of them."""
         from fabrication.export.dxf import write_dxf
+        from fabrication.export.dxf_lint import lint_dxf
 
-        paths = [
-            write_dxf(
+        strips: list[Path] = []
+        faults: list[Finding] = []
+        for own in self.sheets:
+            paths = write_dxf(
                 own.sheets,
                 folder,
                 name=self.project.name,
                 material=own.material,
                 prefix=own.prefix,
+                process=self.process,
             )
-            for own in self.sheets
-        ]
-        return paths[0]
+            strips = strips or paths
+            for path, sheet in zip(paths, own.sheets, strict=True):
+                drawn = [placement.part for placement in sheet.placements]
+                faults += lint_dxf(path, self.process, drawn)
+        return strips, faults
 
     def _write_lists(self, draft: Path) -> None:
         from fabrication.export.assembly_schedule import write_assembly

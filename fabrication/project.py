@@ -36,6 +36,7 @@ from fabrication.panel_settings import require_panels
 from fabrication.section_types import MaterialSection, Section
 from fabrication.sections import NetSection, ProfileSection, Project, SheetSection
 from fabrication.settings import require_makeable
+from fabrication.shop_sections import LayersSection, ShopSection
 from fabrication.source_sections import (
     GuideSection,
     MeshSection,
@@ -203,6 +204,8 @@ def _sections() -> dict[str, type[Section]]:
         "stud": StudSection,
         "blocks": BlocksSection,
         "bars": BarsSection,
+        "shop": ShopSection,
+        "layers": LayersSection,
         "splice": SpliceSection,
         "flat": FlatSection,
         "papers": PapersSection,

@@ -30,6 +30,7 @@ from fabrication.section_types import (
     Size,
     Whole,
 )
+from fabrication.shop_sections import ShopSection
 from fabrication.source_sections import (
     FileSurface,
     MeshSection,
@@ -88,6 +89,7 @@ class Project(Section):
     profile: ProfileSection | None = None
     joint: JointSection | None = None
     bars: BarsSection | None = None
+    shop: ShopSection | None = None
     flat: FlatSection | None = None
     papers: PapersSection | None = None
     facade: FacadeSection | None = None
@@ -157,7 +159,7 @@ class Project(Section):
 
 
 _SECTIONS = {
-    "asymptotic": ("profile", "joint", "facade", "bars", "flat", "papers"),
+    "asymptotic": ("profile", "joint", "facade", "bars", "shop", "flat", "papers"),
     "planar": ("panels", "supports", "connector", "beams"),
 }
 _NEEDED = {"asymptotic": ("profile", "joint"), "planar": ("panels",)}
