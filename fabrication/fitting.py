@@ -19,6 +19,7 @@ import numpy as np
 
 from fabrication.collisions import slot_reach
 from fabrication.cut import Edge
+from fabrication.flattening import corners
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
 from fabrication.shapes import Prisms, Shape
@@ -37,8 +38,8 @@ _SAMPLE = 20.0
 _LONGEST = 250.0
 """Length of a piece that is taken at once, mm, more or less."""
 
-_ARC = 16
-"""Straight pieces of half a circle."""
+_ROUND = 64
+"""Straight sides of a drill."""
 
 
 @dataclass(frozen=True)
@@ -180,27 +181,9 @@ def _solids(kind: Prisms) -> Iterator[_Solid]:
 
 
 def _extruded(shape: Shape) -> manifold3d.Manifold:
-    contours = [_polygon(shape.outline), *(_polygon(o)[::-1] for o in shape.openings)]
+    contours = [corners(shape.outline), *(corners(o)[::-1] for o in shape.openings)]
     section = manifold3d.CrossSection(contours, manifold3d.FillRule.Positive)
     return section.extrude(shape.high - shape.low).translate([0.0, 0.0, shape.low])
-
-
-def _polygon(outline: Floats) -> Floats:
-    """(n, 2) corners of an outline with bulges; arcs as chords."""
-    points = []
-    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        if a[2] == 0.0:
-            points.append(a[None, :2])
-            continue
-        chord, bulge = b[:2] - a[:2], a[2]
-        count = max(2, int(np.ceil(_ARC * np.abs(np.arctan(bulge)) * 4.0 / np.pi)))
-        left = np.array([-chord[1], chord[0]])
-        centre = (a[:2] + b[:2]) / 2.0 + left * (1.0 - bulge**2) / (4.0 * bulge)
-        turn = np.arange(count) / count * 4.0 * np.arctan(bulge)
-        x, y = a[:2] - centre
-        c, s = np.cos(turn), np.sin(turn)
-        points.append(centre + np.stack([c * x - s * y, s * x + c * y], axis=1))
-    return np.concatenate(points)
 
 
 # ---- pieces of strips --------------------------------------------------------------------------
@@ -345,7 +328,7 @@ def _drill(
     middle = lamella.place(s, np.zeros(1), np.array([y - part.width / 2.0]))[0]
     motion = np.column_stack([frame.n[0], frame.t[0], frame.b[0], middle])
     tool = manifold3d.Manifold.cylinder(
-        3.0 * part.thickness, diameter / 2.0, circular_segments=4 * _ARC, center=True
+        3.0 * part.thickness, diameter / 2.0, circular_segments=_ROUND, center=True
     )
     return tool.transform(motion)
 

@@ -41,3 +41,8 @@ def _on_arc(start: Floats, chord: Floats, sweep: Floats, share: Floats) -> Float
     c, s = np.cos(turn), np.sin(turn)
     x, y = chord.T
     return np.asarray(start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1))
+
+
+def corners(outline: Floats) -> Floats:
+    """(n, 2) corners of a closed outline (k, 2), or (k, 3) with bulges: arcs as short lines."""
+    return outline if outline.shape[1] == 2 else flattened(outline, closed=True)[:-1]

@@ -1,0 +1,47 @@
+"""The node schedule: position, angle, strips, slot widths and stations of every node."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from fabrication.export.papers.sheet_frame import Page
+from fabrication.export.papers.tables import Column, table_pages
+from fabrication.jointed import Jointed
+from fabrication.node import Node
+from fabrication.parts import FlatPart
+
+_COLUMNS = (
+    Column("node", 0.8),
+    Column("x", 0.9, "right"),
+    Column("y", 0.9, "right"),
+    Column("z", 0.9, "right"),
+    Column("angle, degrees", 0.9, "right"),
+    Column("strips", 2.2),
+    Column("x on each strip", 2.6),
+    Column("slot widths", 1.4),
+)
+
+
+def node_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> Iterator[Page]:
+    """One row per place where strips cross, in their order."""
+    widths: dict[str, list[str]] = {}
+    for part in parts:
+        for slot in part.slots:
+            widths.setdefault(slot.node, []).append(f"{slot.width:.2f}")
+    rows = [_row(jointed, node, widths) for node in jointed.strips.nodes]
+    yield from table_pages("Nodes", _COLUMNS, rows, paper=paper)
+
+
+def _row(jointed: Jointed, node: Node, widths: dict[str, list[str]]) -> tuple[str, ...]:
+    strips = jointed.strips.lamellas
+    crossings = [(strips[c.lamella], c.station) for c in node.crossings]
+    return (
+        node.name,
+        *(f"{value:.1f}" for value in node.position.tolist()),
+        "-" if node.angle is None else f"{np.degrees(node.angle):.2f}",
+        " ".join(strip.mark for strip, _ in crossings),
+        " ".join(f"{station - strip.start:.1f}" for strip, station in crossings),
+        " / ".join(widths.get(node.name, ["-"])),
+    )
