@@ -21,6 +21,7 @@ from .export.assembly_schedule import write_assembly as write_assembly
 from .export.bay_schedule import write_bay_schedule as write_bay_schedule
 from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
+from .export.dxf_lint import lint_dxf as lint_dxf
 from .export.flat_schedule import write_flat_state as write_flat_state
 from .export.report import write_report as write_report
 from .export.schedule import write_bill as write_bill
@@ -98,6 +99,12 @@ from .sheet_parts import panel_piece as panel_piece
 from .sheet_parts import plate_piece as plate_piece
 from .sheet_parts import shape_piece as shape_piece
 from .sheet_parts import star_piece as star_piece
+from .shop import Cutting as Cutting
+from .shop import DxfVersion as DxfVersion
+from .shop import FileNames as FileNames
+from .shop import Layers as Layers
+from .shop import Process as Process
+from .shop_checks import shop_findings as shop_findings
 from .solid import solids as solids
 from .stock import (
     Profile as Profile,

@@ -14,10 +14,16 @@ def flattened(rows: Floats, *, closed: bool) -> Floats:
     """(n, 2) points of a line with bulges (k, 3); closed ones begin again with the first."""
     if closed and len(rows):
         rows = np.concatenate([rows, rows[:1]])
-    bulge = rows[:-1, 2]
-    if not bulge.any():
+    if not rows[:-1, 2].any():
         return rows[:, :2]
-    start, chord = rows[:-1, :2], np.diff(rows[:, :2], axis=0)
+    with np.errstate(all="ignore"):
+        return _with_arcs(rows)
+
+
+def _with_arcs(rows: Floats) -> Floats:
+    """(n, 2) points of an open line (k, 3); not finite where its numbers are absurd."""
+    bulge, start = rows[:-1, 2], rows[:-1, :2]
+    chord = np.diff(rows[:, :2], axis=0)
     length = np.hypot(*chord.T)
     sweep = 4.0 * np.arctan(bulge)
     curved = (np.abs(sweep) > 0.0) & (length > 0.0)

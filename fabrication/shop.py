@@ -26,6 +26,10 @@ _PLAIN = re.compile(r"[A-Za-z0-9$_-]{1,31}")
 """Names of layers in the oldest format."""
 
 
+STRIPS = "sheet"
+"""Prefix of sheets that hold strips."""
+
+
 class DxfVersion(Enum):
     """The DXF formats a sheet can be written in."""
 
@@ -136,9 +140,15 @@ class FileNames:
         )
 
     def named(self, **values: str) -> str:
-        """The name of one sheet; what no file's name can hold is left out of *values*."""
+        """The name of one sheet; what no file's name can hold is left out of *values*.
+
+        A template without ``{prefix}`` is for the strips' sheets: others get theirs in front, so
+        that they do not replace these.
+        """
         plain = {key: _plain(values.get(key, "")) for key in self.KEYS}
-        return self.template.format(**plain).strip(" .") or plain["number"]
+        found = self.template.format(**plain).strip(" .")
+        told = "{prefix}" in self.template or plain["prefix"] in ("", STRIPS)
+        return found if told else f"{plain['prefix']}-{found}"
 
 
 def _plain(text: str) -> str:

@@ -79,16 +79,14 @@ def write_dxf(
         folder.mkdir(parents=True, exist_ok=True)
         for nested in sheets:
             number = f"{nested.number:0{digits}d}"
-            path = folder / (
-                process.files.named(
-                    name=name,
-                    material=material,
-                    thickness=_thickness(nested),
-                    prefix=prefix,
-                    number=number,
-                )
-                + ".dxf"
+            file = process.files.named(
+                name=name,
+                material=material,
+                thickness=_thickness(nested),
+                prefix=prefix,
+                number=number,
             )
+            path = folder / f"{file}.dxf"
             title = _title(nested, len(sheets), name, material)
             _Writer(process, font).document(nested, title, _quantities(nested, alike)).saveas(path)
             paths.append(path)

@@ -16,6 +16,9 @@ from gridshell.arrays import Floats, Indices
 _ROUNDING = 0.03
 """Of arcs that are checked as lines, both sides, mm."""
 
+_WALLS = 0.5
+"""Length of walls over their distance from which on they are a slot and not an arc's two sides."""
+
 
 def limit_findings(parts: DrawnParts, process: Process) -> Iterator[Finding]:
     """One finding per part and limit, with the worst place."""
@@ -36,7 +39,7 @@ def _beside(parts: DrawnParts, process: Process, grown: float) -> Iterator[Findi
     near = facing(pieces_of([parts.contours[k] for k in angular.tolist()]), reach)
     first, second = angular[near.first], angular[near.second]
     web = (parts.part[first] == parts.part[second]) & near.material
-    slot = (first == second) & ~near.material
+    slot = (first == second) & ~near.material & (near.length > _WALLS * near.distance)
     for mask, code, limit in (
         (web, "thin-web", process.min_web + grown),
         (slot, "narrow-slot", process.min_slot - grown),

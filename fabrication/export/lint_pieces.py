@@ -171,14 +171,21 @@ def _crossed(a: Contour, b: Contour, at: Floats, count: int, same: bool) -> Find
 
 @dataclass(frozen=True, eq=False)
 class Facing:
-    """Pieces that face each other: (m,) contours, (m,) distance, and whether material is between.
+    """Pairs of pieces that run against each other, m.
 
-    *at* is a point of the first piece, (m, 2).
+    Parameters
+    ----------
+    first, second : (m,) numbers of their contours.
+    distance : (m,) between them, mm.
+    length : (m,) along which they lie beside each other, mm.
+    material : (m,) whether there is material between them, or a cut.
+    at : (m, 2) a point of the first piece, mm.
     """
 
     first: Indices
     second: Indices
     distance: Floats
+    length: Floats
     material: Mask
     at: Floats
 
@@ -201,7 +208,6 @@ def facing(pieces: Pieces, reach: float) -> Facing:
     ends = [away_c + (away_d - away_c) * (s - along_c) / span for s in (low, high)]
     away = np.where(np.abs(ends[0]) < np.abs(ends[1]), ends[0], ends[1])
     beside = (high > low) & (np.abs(away) > JOINED) & (np.abs(away) < reach)
-    i, j = i[beside], j[beside]
-    return Facing(
-        pieces.owner[i], pieces.owner[j], np.abs(away[beside]), away[beside] > 0.0, pieces.a[i]
-    )
+    i, j, away = i[beside], j[beside], away[beside]
+    length = (high - low)[beside]
+    return Facing(pieces.owner[i], pieces.owner[j], np.abs(away), length, away > 0.0, pieces.a[i])

@@ -113,6 +113,12 @@ def test_a_template_that_cannot_be_used_is_refused_with_the_list_of_keys(templat
         process(files=template)
 
 
+def test_sheets_of_another_kind_do_not_replace_those_of_strips():
+    files = FileNames("{name}-{number}")
+    names = {files.named(name="roof", prefix=p, number="01") for p in ("sheet", "panels", "stars")}
+    assert names == {"roof-01", "panels-roof-01", "stars-roof-01"}
+
+
 @given(name=st.text(max_size=30))
 def test_a_name_is_one_that_files_can_have(name):
     found = FileNames("{name}_{number}").named(name=name, number="01")
