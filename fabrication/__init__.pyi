@@ -16,6 +16,8 @@ from .connector import connector_findings as connector_findings
 from .connector import connector_groups as connector_groups
 from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
+from .coupon import Coupon as Coupon
+from .coupon import coupon as coupon
 from .cut import Relief as Relief
 from .export.assembly_schedule import write_assembly as write_assembly
 from .export.bay_schedule import write_bay_schedule as write_bay_schedule
@@ -23,6 +25,9 @@ from .export.dxf import read_dxf as read_dxf
 from .export.dxf import write_dxf as write_dxf
 from .export.dxf_lint import lint_dxf as lint_dxf
 from .export.flat_schedule import write_flat_state as write_flat_state
+from .export.papers.drawings import write_drawings as write_drawings
+from .export.papers.labels import write_labels as write_labels
+from .export.papers.templates import write_templates as write_templates
 from .export.report import write_report as write_report
 from .export.schedule import write_bill as write_bill
 from .export.schedule import write_schedule as write_schedule

@@ -6,14 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians
 
+import numpy as np
+
 import gridshell as gs
 from fabrication.assembling import Assembly, assembly_order
 from fabrication.checks import check
+from fabrication.coupon import Coupon, coupon
 from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_system
 from fabrication.finding import Finding
 from fabrication.flat_checks import Ground
 from fabrication.flat_state import FlatState, lay_flat
-from fabrication.joint_sections import JointSection
+from fabrication.joint_sections import JointSection, SlottedJoint
 from fabrication.joint_settings import joint_of
 from fabrication.jointed import Jointed
 from fabrication.lamella_sections import FlatSection
@@ -50,7 +53,7 @@ class LamellaRoute:
         """One sheet or bar at least, and the facade's where there is one."""
         facade = () if self.project.facade is None else (STEP_FILE, "sheets/panels-01.dxf")
         strips = "sheet" if self.project.bars is None else "bar"
-        return (f"sheets/{strips}-01.dxf", "bays.csv", "bill.csv", *facade)
+        return (f"sheets/{strips}-01.dxf", "bays.csv", "bill.csv", "drawings.pdf", *facade)
 
     def recipe(self) -> gs.NetRecipe:
         """An A-net."""
@@ -73,7 +76,7 @@ class LamellaRoute:
                 process = process_of(self.project.shop, profile)
             parts = parts_of(jointed, process.relief)
             strips = strip_sheets(parts, self.project, profile, bars)
-            others = tuple(other_sheets(jointed, self.project, bars))
+            others = tuple(other_sheets(jointed, self.project, bars, self._coupons(jointed)))
             facade = self._facade(skin, jointed.design)
             stress = bay_stress(jointed.strips, parts)
             findings = (
@@ -126,6 +129,23 @@ class LamellaRoute:
             return assembly_order(whole), None
         with keyed("flat"):
             return assembly_order(whole), _laid_flat(whole, flat)
+
+    def _coupons(self, jointed: Jointed) -> tuple[Coupon, ...]:
+        """Two coupons to try the fit of slots with, where the project asks for them."""
+        papers, joint = self.project.papers, self.joint
+        if papers is None or not papers.coupon or not isinstance(joint, SlottedJoint):
+            return ()
+        angles = [node.angle for node in jointed.strips.nodes if node.angle is not None]
+        return tuple(
+            coupon(
+                jointed.strips.profile,
+                angle=float(np.median(angles)),
+                clearance=joint.clearance,
+                depth_clearance=joint.depth_clearance,
+                mark=mark,
+            )
+            for mark in ("FIT-1", "FIT-2")
+        )
 
     def _shop_findings(
         self, process: Process, parts: Sequence[FlatPart], others: Sequence[SheetSet]

@@ -18,8 +18,10 @@ from fabrication.fitting import Fit, fit
 from fabrication.flat_state import FlatState
 from fabrication.jointed import Jointed
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
+from fabrication.lamella_sections import PapersSection
 from fabrication.lamella_stock import BarStock, SheetSet
 from fabrication.parts import FlatPart
+from fabrication.placing import keyed
 from fabrication.routes import (
     CLOSURE_LIMIT,
     VOLUME_LIMIT,
@@ -111,6 +113,8 @@ class LamellaSystem:
             )
         with clock.stage("lists"):
             self._write_lists(draft)
+        with clock.stage("papers"):
+            self._write_papers(draft)
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):
@@ -203,6 +207,33 @@ class LamellaSystem:
             write_flat_state(draft / "flat.csv", self.plans.flat)
         if self.bars is not None:
             write_bars(draft / "bars.csv", self.bars.plan.bars)
+
+    def _write_papers(self, draft: Path) -> None:
+        from fabrication.export.papers.drawings import write_drawings
+        from fabrication.export.papers.labels import write_labels
+        from fabrication.export.papers.templates import write_templates
+
+        name, papers = self.project.name, self.project.papers or PapersSection()
+        material = self.jointed.design.profile.material.name
+        if papers.drawings:
+            write_drawings(
+                draft / "drawings.pdf",
+                self.jointed,
+                self.parts,
+                name=name,
+                paper=papers.paper,
+                revision=papers.revision,
+                findings=self.findings,
+                assembly=self.plans.assembly,
+                flat=self.plans.flat,
+            )
+        if papers.labels:
+            write_labels(draft / "labels.pdf", self.parts, name=name, material=material)
+        if papers.templates is not None:
+            with keyed("papers.templates"):
+                write_templates(
+                    draft / "templates.pdf", self.parts, name=name, paper=papers.templates
+                )
 
     # ---- report --------------------------------------------------------------------------------
 

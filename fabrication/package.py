@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from glob import escape
 from pathlib import Path
 
 import gridshell as gs
@@ -93,8 +94,17 @@ def run(
     with draft_folder(out, names=(*FILES, *route.files)) as draft, kernel() as cad:
         design = _design(project, route, Path(folder), clock)
         report = _write(project, design, draft, cad, clock)
-        move_in(draft, out, stale=_STALE)
+        move_in(draft, out, stale=(*_STALE, *_sheets_before(out)))
     return report
+
+
+def _sheets_before(out: Path) -> list[str]:
+    """Sheets that the report of an earlier run names, whatever the shop called them."""
+    try:
+        named = json.loads((out / "report.json").read_text(encoding="utf-8"))["sheets"]
+        return [f"sheets/{escape(Path(name).name)}" for name in named if name.endswith(".dxf")]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return []  # none, or not ours
 
 
 def _route(project: Project) -> Route:
@@ -175,6 +185,7 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
         "net": design.net,
         **written.sections,
         **_moulds(project, design.control),
+        "sheets": sorted(path.name for path in (draft / "sheets").glob("*.dxf")),
         "findings": [
             {**asdict(f), "severity": f.severity.value}
             for f in (*design.findings, *written.findings)

@@ -118,7 +118,7 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
                 mark=lamella.mark,
                 outline=outline(developed.length, width, slots),
                 slots=slots,
-                labels=_labels(lamella.mark, developed, slots, width),
+                labels=_labels(lamella.mark, developed, slots, cuts.holes, width),
                 width=width,
                 thickness=thickness,
                 development=developed,
@@ -145,9 +145,13 @@ def _require_room(mark: str, slots: Sequence[Slot], length: float) -> None:
 
 
 def _labels(
-    mark: str, developed: Development, slots: Sequence[Slot], width: float
+    mark: str,
+    developed: Development,
+    slots: Sequence[Slot],
+    holes: Sequence[Hole],
+    width: float,
 ) -> tuple[Label, ...]:
-    """Partner marks in the uncut half behind each slot; the own mark beside the first node."""
+    """Partner marks in the uncut half behind each slot; the own mark in the first free place."""
     largest = min(width / 8.0, 10.0)
     labels = []
     for k, slot in enumerate(slots):
@@ -155,8 +159,23 @@ def _labels(
         room = 0.9 * min(beside, default=np.inf) / (_LETTER * len(slot.partner))
         behind = 0.2 * width if slot.edge is Edge.UPPER else 0.8 * width
         labels.append(Label(slot.partner, slot.x, behind, min(largest, room)))
-    inside = [x for x in developed.node_x.tolist() if 0.0 <= x <= developed.length]
-    first = inside[0] if inside else 0.0
-    following = inside[1] if len(inside) > 1 else developed.length
-    labels.insert(0, Label(mark, (first + following) / 2.0, width / 2.0, 1.5 * largest))
+    labels.insert(0, _own_label(mark, developed.length, slots, holes, width))
     return tuple(labels)
+
+
+def _own_label(
+    mark: str, length: float, slots: Sequence[Slot], holes: Sequence[Hole], width: float
+) -> Label:
+    """The strip's own mark half-way up, in the first place that is long enough, or the longest."""
+    taken = [(s.x - s.spread, s.x + s.spread) for s in slots]
+    taken += [(h.x - h.diameter / 2.0, h.x + h.diameter / 2.0) for h in holes]
+    walls = [(0.0, 0.0), *sorted(taken), (length, length)]
+    height = 1.5 * min(width / 8.0, 10.0)
+    needed = (len(mark) + 1.0) * _LETTER * height
+    free, reached = [], 0.0
+    for low, high in walls:
+        free.append((reached, low))
+        reached = max(reached, high)
+    fitting = [gap for gap in free if gap[1] - gap[0] >= needed]
+    low, high = fitting[0] if fitting else max(free, key=lambda gap: gap[1] - gap[0])
+    return Label(mark, (low + high) / 2.0, width / 2.0, height * min(1.0, (high - low) / needed))

@@ -14,8 +14,9 @@ import numpy as np
 
 from fabrication.export.papers.sheet_frame import MEDIUM, THIN, Area, Page, Pen, page_area
 from fabrication.flattening import corners
-from fabrication.jointed import Jointed
+from fabrication.jointed import BillLine, Jointed
 from fabrication.joints.node_frames import bisector_frames, node_tangents
+from fabrication.lamella import Lamella
 from fabrication.node import Node
 from fabrication.outlines import Frame
 from fabrication.parts import FlatPart
@@ -61,6 +62,8 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
             notes: Sequence[str] = notes,
             scale: float = scale,
             half: float = half,
+            angle: float = float(node.angle or 0.0),
+            width: float = jointed.design.profile.width,
         ) -> None:
             middle = page.y + page.height / 2.0 + 5.0
             left, right = page.x + 0.26 * page.width, page.x + 0.68 * page.width
@@ -69,6 +72,8 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
                 up = frame.distance(band.points) / scale
                 _line(pen, band, np.stack([left + flat[:, 0], middle + flat[:, 1]], axis=1))
                 _line(pen, band, np.stack([right + flat[:, 0], middle + up], axis=1))
+            _angle(pen, left, middle, angle, half / scale)
+            _height(pen, right - half / scale - 6.0, middle, width, scale)
             top = middle + half / scale + 8.0
             pen.text(left, top, "along the node axis", align="middle")
             pen.text(right, top, "from the side, across the bisector", align="middle")
@@ -78,6 +83,27 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
                 y -= 4.6
 
         yield Page(f"Joint at {node.name}", f"1:{scale:g}", draw)
+
+
+def _angle(pen: Pen, x: float, y: float, angle: float, radius: float) -> None:
+    """The node angle between the lines of the two families, about the bisector."""
+    turn = np.linspace(-angle / 2.0, angle / 2.0, _SAMPLES)
+    arc = np.array([x, y]) + 0.85 * radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    pen.line(arc.tolist(), width=THIN)
+    for end in (turn[0], turn[-1]):
+        way = radius * np.array([np.cos(end), np.sin(end)])
+        pen.line([(x, y), (x + way[0], y + way[1])], width=THIN, dash=(6.0, 1.0, 1.0, 1.0))
+    pen.text(x + 0.85 * radius + 2.0, y - 1.2, f"{np.degrees(angle):.2f} deg", height=3.0)
+
+
+def _height(pen: Pen, x: float, y: float, width: float, scale: float) -> None:
+    """The strip's width beside the view from the side."""
+    half = width / 2.0 / scale
+    pen.line([(x, y - half), (x, y + half)], width=THIN)
+    for end in (y - half, y + half):
+        pen.line([(x - 1.2, end - 1.2), (x + 1.2, end + 1.2)], width=MEDIUM)
+        pen.line([(x - 2.0, end), (x + 5.0, end)], width=THIN)
+    pen.text(x - 1.5, y, f"{width:g}", height=3.0, align="middle", angle=90.0)
 
 
 def _chosen(nodes: Sequence[Node]) -> list[int]:
@@ -103,7 +129,7 @@ def _strip_bands(jointed: Jointed, parts: Sequence[FlatPart], frame: Frame) -> I
     """Edges of both faces of every strip near the node, slots and holes among them."""
     reach = _REACH * jointed.design.profile.width
     for strip, part in zip(jointed.strips.lamellas, parts, strict=True):
-        near = _near(strip.axis.spline, strip.start, strip.end, frame, reach)
+        near = _near(strip, frame, reach)
         if near is None:
             continue
         low, high = near[0] - strip.start, near[1] - strip.start
@@ -136,12 +162,11 @@ def _strip_bands(jointed: Jointed, parts: Sequence[FlatPart], frame: Frame) -> I
                 )
 
 
-def _near(
-    curve: object, start: float, end: float, frame: Frame, reach: float
-) -> tuple[float, float] | None:
+def _near(strip: Lamella, frame: Frame, reach: float) -> tuple[float, float] | None:
     """Stations between which a strip is within *reach* of the node."""
+    start, end = strip.start, strip.end
     s = np.linspace(start, end, 400)
-    points = curve(s)  # type: ignore[operator]
+    points = strip.axis.spline(s)
     away = np.linalg.norm(points - frame.origin, axis=1)
     if away.min() > reach:
         return None
@@ -210,7 +235,7 @@ def _notes(jointed: Jointed, parts: Sequence[FlatPart], node: Node) -> list[str]
     return notes[:7]
 
 
-def _kinds(jointed: Jointed) -> Iterator:  # type: ignore[type-arg]
+def _kinds(jointed: Jointed) -> Iterator[BillLine]:
     """The first line of every item of the bill."""
     seen: set[str] = set()
     for line in jointed.bill:

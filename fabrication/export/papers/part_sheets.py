@@ -31,11 +31,11 @@ _SCALES = (1.0, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0, 40.
 _PITCH = 3.2
 """Between two figures written across the strip, mm."""
 
-_ABOVE, _BELOW, _HEAD, _GAP = 17.0, 33.0, 8.0, 3.0
+_ABOVE, _BELOW, _HEAD, _GAP = 17.0, 32.0, 8.0, 2.0
 """Room for the figures above and below a row, a strip's heading, and between strips, mm."""
 
 _MARGIN = 8.0
-_HIGHEST = 22.0
+_HIGHEST = 17.0
 """Height of a strip on paper at most, mm."""
 
 
