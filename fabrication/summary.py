@@ -28,11 +28,18 @@ def _moulds(found: Report | None) -> list[str]:
 def _strips(report: Report) -> list[str]:
     built, closed, angle = report["structure"], report["closure"], report["net"]["node_angle_deg"]
     clash = report["fit"]["clash_mm3"]["max"]
+    strips = (
+        "" if built["strips"] == built["lamellas"] else f" in {plural(built['strips'], 'strip')}"
+    )
+    raw = "bar" if "bars" in report["stock"] else "sheet"
     lines = [
-        f"{plural(built['lamellas'], 'lamella')}, {plural(built['joints'], 'joint')}, "
+        f"{plural(built['lamellas'], 'lamella')}{strips}, {plural(built['joints'], 'joint')}, "
         f"{length(built['total_length_m'])}, {mass(built['mass_kg'])} on "
-        f"{plural(built['sheets'], 'sheet')}; "
+        f"{plural(built['sheets'], raw)}; "
         f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",
+        *_stock(report["stock"]),
+        f"bent in, the material bears {100.0 * report['stress']['utilisation']['max']:.0f} % of "
+        f"its strength at most, at {report['stress']['utilisation']['where']}",
         f"files close onto the design within {closed['max_mm']:.3f} mm, volumes within "
         f"{closed['volume_ppm']:.1f} ppm; largest clash {clash:.1g} mm3",
     ]
@@ -44,6 +51,11 @@ def _strips(report: Report) -> list[str]:
             f"{plural(glass['profiles'], 'secondary profile')}, {length(glass['profile_length_m'])}"
         )
     return lines
+
+
+def _stock(stock: Report) -> list[str]:
+    """Bars, whether fewer could do, and the splices they cost."""
+    return [stock["bars"]["text"]] if "bars" in stock else []
 
 
 def _planar(report: Report) -> list[str]:

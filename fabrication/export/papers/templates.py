@@ -129,7 +129,7 @@ def _draw(pen: Pen, tile: _Tile, x: float, y: float, length: float) -> None:
         _seam(pen, at - low + x, y, part.width, shown=last)
     pen.text(
         x + 20.0,
-        y + part.width / 2.0 - 1.5,
+        y + 4.0,
         f"{part.mark}   {tile.number} / {tile.count}   from {low:.0f} mm",
         height=3.0,
         bold=True,
