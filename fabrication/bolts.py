@@ -34,6 +34,8 @@ def bolt_bodies(
     grips: Floats,
     lengths: Sequence[float],
     diameter: float,
+    *,
+    of: str = "",
 ) -> tuple[Prisms, Prisms]:
     """Bolts (shanks), and their heads and nuts.
 
@@ -43,6 +45,7 @@ def bolt_bodies(
     heads : frames in the plane the heads lie on; bolts run against their normals.
     grips : (n,) thickness that is held, mm.
     lengths : of the bolts under their heads, mm.
+    of : what they hold, where there are others: "block ".
     """
     hexagon = _hexagon(FLATS * diameter)
     sizes = sorted(set(lengths))
@@ -60,8 +63,8 @@ def bolt_bodies(
         below = Frame(frame.origin - grip * frame.normal, frame.x, frame.y)
         ends += [Body(f"{mark}-head", 0, frame), Body(f"{mark}-nut", 1, below)]
     return (
-        Prisms("bolts", COLOUR, shanks, bolts),
-        Prisms("heads and nuts", COLOUR, (head, nut) if ends else (), tuple(ends)),
+        Prisms(f"{of}bolts", COLOUR, shanks, bolts),
+        Prisms(f"{of}heads and nuts", COLOUR, (head, nut) if ends else (), tuple(ends)),
     )
 
 

@@ -166,16 +166,19 @@ def _labels(
 def _own_label(
     mark: str, length: float, slots: Sequence[Slot], holes: Sequence[Hole], width: float
 ) -> Label:
-    """The strip's own mark half-way up, in the first place that is long enough, or the longest."""
+    """The strip's own mark half-way up, between the first two cuts it fits between, or the widest."""
     taken = [(s.x - s.spread, s.x + s.spread) for s in slots]
     taken += [(h.x - h.diameter / 2.0, h.x + h.diameter / 2.0) for h in holes]
     walls = [(0.0, 0.0), *sorted(taken), (length, length)]
     height = 1.5 * min(width / 8.0, 10.0)
-    needed = (len(mark) + 1.0) * _LETTER * height
+    needed = 2.0 * (len(mark) + 1.0) * _LETTER * height
     free, reached = [], 0.0
     for low, high in walls:
         free.append((reached, low))
         reached = max(reached, high)
-    fitting = [gap for gap in free if gap[1] - gap[0] >= needed]
-    low, high = fitting[0] if fitting else max(free, key=lambda gap: gap[1] - gap[0])
-    return Label(mark, (low + high) / 2.0, width / 2.0, height * min(1.0, (high - low) / needed))
+    between = free[1:-1] or free
+    fitting = [gap for gap in between if gap[1] - gap[0] >= needed]
+    low, high = fitting[0] if fitting else max(between, key=lambda gap: gap[1] - gap[0])
+    return Label(
+        mark, (low + high) / 2.0, width / 2.0, height * min(1.0, 2.0 * (high - low) / needed)
+    )

@@ -212,7 +212,12 @@ def _bolts(
     length = bolt_length(grip, spec.bolt)
     count = len(kept)
     bolts = bolt_bodies(
-        [mark for mark, *_ in kept], heads, np.full(count, grip), [length] * count, spec.bolt
+        [mark for mark, *_ in kept],
+        heads,
+        np.full(count, grip),
+        [length] * count,
+        spec.bolt,
+        of="block ",
     )
     lines = [
         BillLine("bolt", f"M{spec.bolt:g} x {length:g}", count, note="through strips and block"),

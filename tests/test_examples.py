@@ -13,6 +13,7 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
+from fabrication.loop import slot_centres
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PROJECTS = sorted(EXAMPLES.glob("*.toml"))
@@ -239,14 +240,15 @@ def test_double_lamellas_are_two_different_strips(packages):
     report, out = packages("14_steel_double_lamellas")
     assert report["structure"]["strips"] == 2 * report["structure"]["lamellas"]
     assert report["closure"]["slots"] == 2 * report["structure"]["joints"]
-    with (out / "parts.csv").open() as file:
-        lengths = {row["mark"]: float(row["length_mm"]) for row in csv.DictReader(file)}
-    apart = [abs(lengths[f"A{k}L"] - lengths[f"A{k}R"]) for k in range(1, 6)]
-    assert min(apart) > 0.5
+    sheets = (out / "sheets").glob("sheet-*")
+    flat = {part.mark: part for file in sheets for part in fab.read_dxf(file)}
+    left, right = (np.diff(slot_centres(flat[f"A3{side}"].outline)) for side in "LR")
+    assert np.abs(left - right).max() > 0.5
     with (out / "bill.csv").open() as file:
         bill = list(csv.DictReader(file))
-    (washers,) = [line for line in bill if line["item"] == "star washer"]
-    assert float(washers["quantity"]) == 2.0 * 135.0
+    washers = [float(line["quantity"]) for line in bill if line["item"] == "star washer"]
+    assert sum(washers) == 2.0 * 135.0
+    assert len(washers) <= 2
 
 
 @pytest.mark.xdist_group("examples")
@@ -266,7 +268,7 @@ def test_the_metro_roof_is_made_of_pieces_between_strips_that_run_through(packag
     report, _ = packages("16_metro_roof")
     built = report["structure"]
     assert built["strips"] == 12 + 12 * 11
-    assert built["connectors"]["cleats"] == 2 * 2 * 12 * 11
+    assert built["connectors"]["angle cleats"] == 2 * 2 * 12 * 11
     assert report["closure"]["ends"] >= 2 * 12 * 11
     assert report["facade"]["panels"] == 2 * 11 * 11
 
