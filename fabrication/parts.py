@@ -166,7 +166,7 @@ def _labels(
 def _own_label(
     mark: str, length: float, slots: Sequence[Slot], holes: Sequence[Hole], width: float
 ) -> Label:
-    """The strip's own mark half-way up, between the first two cuts it fits between, or the widest."""
+    """The strip's own mark half-way up, between the first two cuts it fits between."""
     taken = [(s.x - s.spread, s.x + s.spread) for s in slots]
     taken += [(h.x - h.diameter / 2.0, h.x + h.diameter / 2.0) for h in holes]
     walls = [(0.0, 0.0), *sorted(taken), (length, length)]
