@@ -173,8 +173,11 @@ def pretend(monkeypatch):
         report = {
             "name": "[bold]small[/bold]",
             "net": {"status": "Converged.", "node_angle_deg": {"min": 90.0, "max": 90.0}},
+            "stress": {"utilisation": {"max": 0.25, "where": "A1 N1-N2"}},
+            "stock": {"sheet": {"sheets": 1, "bound": 1, "used": 0.5}},
             "structure": {
-                **{"lamellas": 6, "joints": 9, "total_length_m": 1.0, "mass_kg": 1.0},
+                **{"lamellas": 6, "strips": 6, "joints": 9},
+                **{"total_length_m": 1.0, "mass_kg": 1.0},
                 "sheets": 1,
                 **built,
             },

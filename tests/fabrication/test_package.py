@@ -29,7 +29,8 @@ SMALL = {
 }
 FILES = {
     *["net.json", "net.obj", "report.json", "report.html", "structure.step", "parts.csv"],
-    *["assembly.csv", "bays.csv", "bill.csv", "sheets/sheet-01.dxf", "sheets/sheet-02.dxf"],
+    *["assembly.csv", "bays.csv", "bill.csv", "drawings.pdf"],
+    *["sheets/sheet-01.dxf", "sheets/sheet-02.dxf"],
 }
 
 
