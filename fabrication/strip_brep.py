@@ -18,7 +18,7 @@ import numpy as np
 
 from fabrication.errors import KernelError
 from fabrication.sides import Side
-from fabrication.strip_loops import Loop, Piece, Run, arc_images
+from fabrication.strip_loops import DEGREE, Loop, Piece, Run, arc_images
 from gridshell.arrays import Floats, unit
 
 try:
@@ -185,7 +185,7 @@ class _Builder:
                 array.SetValue(i, gp_Pnt(x, y, z))
             low, high = piece.low[0], piece.high[0]
             values = [low + (high - low) * share for share in self.shares]
-            self.curves[key] = Geom_BSplineCurve(array, *_knots(values, self.counts), 3)
+            self.curves[key] = Geom_BSplineCurve(array, *_knots(values, self.counts), DEGREE)
         return self.curves[key]
 
     def _trace(
