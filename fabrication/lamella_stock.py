@@ -30,6 +30,10 @@ _WISHES = {
 }
 
 
+BAR = "bar"
+"""Prefix of the files of bars."""
+
+
 @dataclass(frozen=True, eq=False)
 class SheetSet:
     """Sheets or bars of one material and thickness.
@@ -44,6 +48,11 @@ class SheetSet:
     material: str
     sheets: tuple[NestedSheet, ...]
     bound: int
+
+    @property
+    def of_bars(self) -> bool:
+        """Whether these are bars, as wide as what is cut from them."""
+        return self.prefix == BAR
 
     def figures(self) -> Report:
         """For the report."""
@@ -127,7 +136,7 @@ def strip_sheets(
         return SheetSet("sheet", material, nest(parts, sheet), sheet_bound(parts, sheet))
     named = {part.mark: part for part in parts}
     cut = tuple(_as_sheet(bar, named, profile) for bar in bars.plan.bars.cut)
-    return SheetSet("bar", material, cut, bars.plan.bars.bound)
+    return SheetSet(BAR, material, cut, bars.plan.bars.bound)
 
 
 def _as_sheet(cut: CutBar, parts: dict[str, FlatPart], profile: Profile) -> NestedSheet:

@@ -186,8 +186,14 @@ class LamellaSystem:
             strips = strips or paths
             for path, sheet in zip(paths, own.sheets, strict=True):
                 drawn = [placement.part for placement in sheet.placements]
-                faults += lint_dxf(path, self.process, drawn)
+                found = lint_dxf(path, self.process, drawn)
+                faults += [f for f in found if not self._beside_bar(own, f)]
         return strips, faults
+
+    def _beside_bar(self, own: SheetSet, finding: Finding) -> bool:
+        """Whether half a kerf lies beside the long edges of a bar, which are not cut."""
+        offset = self.process.offset
+        return own.of_bars and finding.code == "outside-sheet" and finding.value <= offset + 1e-6
 
     def _write_lists(self, draft: Path) -> None:
         from fabrication.export.assembly_schedule import write_assembly

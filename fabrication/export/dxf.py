@@ -11,8 +11,10 @@ by half a kerf.
 
 from __future__ import annotations
 
+import logging
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -88,13 +90,27 @@ def write_dxf(
             )
             path = folder / f"{file}.dxf"
             title = _title(nested, len(sheets), name, material)
-            _Writer(process, font).document(nested, title, _quantities(nested, alike)).saveas(path)
+            document = _Writer(process, font).document(nested, title, _quantities(nested, alike))
+            with _quiet():
+                document.saveas(path)
             paths.append(path)
     except OSError as error:
         raise OutputError(
             "The sheets cannot be written", where=str(folder), value=error.strerror or ""
         ) from None
     return paths
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the library's warning about R12 off the terminal: nothing in the file is newer."""
+    logger = logging.getLogger("ezdxf")
+    before = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
 
 
 def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
