@@ -1,8 +1,11 @@
 """Public names of fabrication, each by the module that holds it."""
 
+from .arrangement import Lane as Lane
+from .arrangement import arranged as arranged
 from .assembling import Assembly as Assembly
 from .assembling import AssemblyStep as AssemblyStep
 from .assembling import assembly_order as assembly_order
+from .bars import Bar as Bar
 from .beam_layout import Beam as Beam
 from .beam_layout import BeamEnd as BeamEnd
 from .beam_layout import BeamSection as BeamSection
@@ -19,6 +22,7 @@ from .connector_pieces import StarSpec as StarSpec
 from .coupon import Coupon as Coupon
 from .coupon import coupon as coupon
 from .cut import Relief as Relief
+from .cutting_stock import cut_bars as cut_bars
 from .export.assembly_schedule import write_assembly as write_assembly
 from .export.bay_schedule import write_bay_schedule as write_bay_schedule
 from .export.dxf import read_dxf as read_dxf
@@ -111,6 +115,14 @@ from .shop import Layers as Layers
 from .shop import Process as Process
 from .shop_checks import shop_findings as shop_findings
 from .solid import solids as solids
+from .splice_plan import SplicePlan as SplicePlan
+from .splice_plan import Splices as Splices
+from .splice_plan import preferred as preferred
+from .splice_plan import tradeoff as tradeoff
+from .splice_plate import SplicePlate as SplicePlate
+from .splices import runs_of as runs_of
+from .splices import splice_plates as splice_plates
+from .splices import spliced as spliced
 from .stock import (
     Profile as Profile,
 )
