@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import degrees
 
 import numpy as np
 
@@ -53,7 +54,7 @@ class ScissorJoint(Joint):
             raise SettingError(
                 "A grid opens from an angle between its strips",
                 where="opens_from",
-                value=f"{np.degrees(self.opens_from):g} degrees",
+                value=f"{degrees(self.opens_from):g} degrees",
                 limit="above 0, at most 90 degrees",
                 advice="45 degrees",
             )
