@@ -89,7 +89,7 @@ def shear_blocks(spec: ShearBlock, design: Structure, made: Arrangement, *, keep
 
     Parameters
     ----------
-    keep : length on either side of a node that its stud needs, mm.
+    keep : from a node to the end of its stud along an axis, mm.
     """
     profile = design.profile
     places = [_places(lamella, spec.per_bay) for lamella in design.lamellas]
@@ -261,7 +261,8 @@ def _findings(
         for lamella in design.lamellas
         if len(lamella.stations) > 1
     ]
-    room = (min(bays, default=np.inf) - 2.0 * keep) / (spec.per_bay + 1)
+    apart = min(bays, default=np.inf) / (spec.per_bay + 1)
+    room = min(apart, 2.0 * (apart - keep))
     if spec.length > room:
         yield Finding(
             "block-length",
@@ -271,5 +272,6 @@ def _findings(
             float(room),
             "mm",
             f"{spec.per_bay} shear blocks of {spec.length:g} mm do not stand clear of each other "
-            f"and of the studs: {room:.0f} mm are left for each. Use shorter or fewer blocks.",
+            f"and of the studs: {max(room, 0.0):.0f} mm are left for each. Use shorter or fewer "
+            "blocks.",
         )

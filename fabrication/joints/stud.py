@@ -21,10 +21,10 @@ import numpy as np
 from fabrication.arrangement import LEFT, RIGHT, Arrangement, Lane, arranged
 from fabrication.bolts import bolt_bodies, bolt_length
 from fabrication.cut import Cuts, Hole
-from fabrication.finding import Finding, Severity
 from fabrication.jointed import BillLine, Feature, Fixture, Jointed
 from fabrication.joints.joint import Joint
 from fabrication.joints.node_frames import bisector_frames, node_tangents
+from fabrication.joints.stud_findings import stud_findings
 from fabrication.node import Node
 from fabrication.outlines import Frame
 from fabrication.rooms import room_beside
@@ -37,8 +37,7 @@ from gridshell.arrays import Floats
 
 _COLOUR = (0.72, 0.56, 0.36)
 _HOLE_PLAY = 1.0
-_EDGE_DISTANCE = 1.2
-_SAMPLES_PER_BAY = 8
+_ANGLE_STEP = np.radians(0.5)
 
 
 @dataclass(frozen=True)
@@ -136,6 +135,19 @@ class StudJoint(Joint):
         holes, fixtures = self._holes(design, made, nodes, tangents)
         bolts, bolt_bill = self._bolts(design, made, nodes, tangents, level)
         blocks = self._blocks(design, made, sizes, nodes)
+        need = self._need(nodes)
+        found = stud_findings(
+            design,
+            made,
+            nodes,
+            need=need,
+            room=rooms.min(axis=1, initial=np.inf),
+            level=level,
+            length=length,
+            hole=self.bolt + _HOLE_PLAY if self.bolt else 0.0,
+            spacing=self.spacing,
+            fit=self.stud.fit,
+        )
         cuts = {
             mark: Cuts(holes=tuple(sorted([*own, *blocks.holes[mark]], key=lambda h: h.x)))
             for mark, own in holes.items()
@@ -148,7 +160,7 @@ class StudJoint(Joint):
             fixtures=(*fixtures, *blocks.fixtures),
             connectors=(studs, *bolts, *blocks.connectors),
             bill=(*self._bill(studs, length), *bolt_bill, *blocks.bill),
-            findings=(*self._findings(design, made, nodes, rooms, level, length), *blocks.findings),
+            findings=(*found, *blocks.findings),
         )
 
     def _level(self, design: Structure) -> float:
@@ -211,12 +223,21 @@ class StudJoint(Joint):
             sizes = rooms.min(axis=1, initial=np.inf) - 2.0 * self.stud.fit
         if self.stud.step == 0.0:
             return sizes, angle
-        turned = np.round(angle / np.radians(0.5)) * np.radians(0.5)
+        turned = np.round(angle / _ANGLE_STEP) * _ANGLE_STEP
         if self.stud.size is None:
-            leaning = np.abs(turned - angle) * (1.0 + np.abs(np.cos(angle))) / np.sin(angle)
-            sizes = sizes / (1.0 + leaning)
+            sizes = sizes / (1.0 + _leaning(angle, turned))
             sizes = np.floor(sizes / self.stud.step + 1e-9) * self.stud.step
         return sizes, turned
+
+    def _need(self, nodes: Sequence[Node]) -> Floats:
+        """(n,) room that each stud needs at least, mm: that of its own size where it has one."""
+        if self.stud.size is None:
+            return np.full(len(nodes), 2.0 * self.stud.wall)
+        angle = np.array([node.angle for node in nodes], dtype=float)
+        if self.stud.step == 0.0:
+            return np.full(len(nodes), self.stud.size)
+        turned = np.round(angle / _ANGLE_STEP) * _ANGLE_STEP
+        return np.asarray(self.stud.size * (1.0 + _leaning(angle, turned)))
 
     def _studs(
         self,
@@ -299,11 +320,11 @@ class StudJoint(Joint):
     ) -> Blocks:
         if self.blocks is None:
             return Blocks((), {s.mark: [] for s in made.strips.lamellas}, (), (), ())
-        sharpest = min((min(n.angle or 0.0, np.pi - (n.angle or 0.0)) for n in nodes), default=1.0)
-        keep = float(sizes.max(initial=0.0)) / max(float(np.sin(sharpest)), 1e-6)
-        return shear_blocks(self.blocks, design, made, keep=keep)
+        angle = np.array([node.angle for node in nodes], dtype=float)
+        reach = sizes / 2.0 * (1.0 + np.abs(np.cos(angle))) / np.sin(angle)
+        return shear_blocks(self.blocks, design, made, keep=float(reach.max(initial=0.0)))
 
-    # ---- bill and findings ---------------------------------------------------------------------
+    # ---- bill ---------------------------------------------------------------------------------
 
     def _bill(self, studs: Prisms, length: float) -> Iterator[BillLine]:
         used = Counter(body.shape for body in studs.bodies)
@@ -321,118 +342,16 @@ class StudJoint(Joint):
                 note=f"{kind}{drilled}",
             )
 
-    def _findings(
-        self,
-        design: Structure,
-        made: Arrangement,
-        nodes: Sequence[Node],
-        rooms: Floats,
-        level: float,
-        length: float,
-    ) -> Iterator[Finding]:
-        if not nodes:
-            return
-        yield Finding(
-            "stud-assembly",
-            Severity.INFO,
-            "all nodes",
-            float(len(nodes)),
-            0.0,
-            "studs",
-            "The studs only fit once all strips of both levels are bent into place: build on a "
-            "falsework, lower level first.",
-        )
-        yield from self._room_findings(nodes, rooms)
-        yield from self._length_findings(design, level, length)
-        hole = self.bolt + _HOLE_PLAY
-        if self.bolt and design.profile.width / 2.0 < _EDGE_DISTANCE * hole:
-            yield Finding(
-                "bolt-edge",
-                Severity.ERROR,
-                "all nodes",
-                design.profile.width / 2.0,
-                _EDGE_DISTANCE * hole,
-                "mm",
-                f"The holes of {hole:g} mm lie {design.profile.width / 2.0:g} mm from the edges of "
-                f"the strips, {_EDGE_DISTANCE * hole:.1f} mm are needed. Use a smaller bolt.",
-            )
-        yield self._level_finding(design, made, level)
-
-    def _room_findings(self, nodes: Sequence[Node], rooms: Floats) -> Iterator[Finding]:
-        room = rooms.min(axis=1) - 2.0 * self.stud.fit
-        worst = int(np.argmin(room))
-        size = 2.0 * self.stud.wall if self.stud.size is None else self.stud.size
-        if room[worst] < size or room[worst] <= 0.0:
-            yield Finding(
-                "stud-room",
-                Severity.ERROR,
-                nodes[worst].name,
-                size,
-                float(room[worst]),
-                "mm",
-                f"The strips leave {room[worst]:.2f} mm for the stud at {nodes[worst].name}, which "
-                f"needs {size:g} mm. Use a smaller stud or a spacing of "
-                f"{np.ceil(self.spacing + size - room[worst]):g} mm.",
-            )
-
-    def _length_findings(self, design: Structure, level: float, length: float) -> Iterator[Finding]:
-        both = 2.0 * level + design.profile.width
-        if length > both + 1e-9:
-            yield Finding(
-                "stud-long",
-                Severity.WARNING,
-                "all nodes",
-                length,
-                both,
-                "mm",
-                f"The studs are {length:g} mm long and stand out of both levels, which are "
-                f"{both:g} mm high together. Use {both:g} mm.",
-            )
-        elif length < 2.0 * level:
-            yield Finding(
-                "stud-short",
-                Severity.ERROR,
-                "all nodes",
-                length,
-                both,
-                "mm",
-                f"The studs are {length:g} mm long and hold less than half of either level, which "
-                f"are {both:g} mm high together. Use {both:g} mm.",
-            )
-
-    def _level_finding(self, design: Structure, made: Arrangement, level: float) -> Finding:
-        """Bending about the strong axis, which the distance from the net costs."""
-        profile = design.profile
-        largest, where = 0.0, ""
-        for strip in made.strips.lamellas:
-            count = _SAMPLES_PER_BAY * max(len(strip.stations), 2)
-            _, strong = strip.bending(np.linspace(strip.start, strip.end, count))
-            if (most := float(np.abs(strong).max())) >= largest:
-                largest, where = most, strip.mark
-        stress = profile.material.modulus * largest * profile.width / 2.0
-        limit = profile.material.strength
-        advice = (
-            f" Use level = {level * limit / stress:.0f} mm at most, or a narrower strip."
-            if stress > limit
-            else ""
-        )
-        return Finding(
-            "level-bend",
-            Severity.ERROR if stress > limit else Severity.INFO,
-            where,
-            stress,
-            limit,
-            "N/mm2",
-            f"At {level:g} mm from the net, {where} bends about its strong axis to a radius of "
-            f"{1.0 / max(largest, 1e-12) / 1e3:.1f} m: {stress:.1f} N/mm2, {limit:g} "
-            f"allowed.{advice}",
-        )
-
 
 def rhombus(size: float, angle: float) -> Floats:
     """(4, 3) outline with opposite sides *size* mm apart; x lies along the bisector of *angle*."""
     x, y = size / (2.0 * np.sin(angle / 2.0)), size / (2.0 * np.cos(angle / 2.0))
     return np.array([[x, 0.0, 0.0], [0.0, y, 0.0], [-x, 0.0, 0.0], [0.0, -y, 0.0]])
+
+
+def _leaning(angle: Floats, turned: Floats) -> Floats:
+    """Share of its size that a stud of the angle *turned* needs more between strips at *angle*."""
+    return np.asarray(np.abs(turned - angle) * (1.0 + np.abs(np.cos(angle))) / np.sin(angle))
 
 
 def _passing(made: Arrangement, nodes: Sequence[Node]) -> Iterator[tuple[int, Floats, Floats]]:

@@ -179,3 +179,16 @@ def test_rings_and_singular_nodes_have_studs_where_two_lamellas_cross(ring, tube
         ).build(one.structure)
         regular = sum(node.regular for node in one.structure.nodes)
         assert len(made.connectors[0].bodies) == regular
+
+
+def test_blocks_may_fill_a_bay_from_stud_to_stud(square):
+    """One block in the middle of the shortest bay: all of it but half a stud at either end."""
+    shortest = min(float(np.diff(lamella.stations).min()) for lamella in square.lamellas)
+    size = sides(joint().build(square).connectors[0].shapes[0].outline)
+    for length, codes in (
+        (shortest - 1.1 * size, set()),
+        (shortest - 0.8 * size, {"block-length"}),
+    ):
+        blocks = fab.ShearBlock(1, length, fab.BIRCH_PLY)
+        found = {f.code for f in joint(blocks=blocks).build(square).findings}
+        assert found - {"stud-assembly", "level-bend", "block-room"} == codes
