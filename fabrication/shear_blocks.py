@@ -262,7 +262,9 @@ def _findings(
         if len(lamella.stations) > 1
     ]
     apart = min(bays, default=np.inf) / (spec.per_bay + 1)
-    room = min(apart, 2.0 * (apart - keep))
+    room = 2.0 * (apart - keep)
+    if spec.per_bay > 1:
+        room = min(room, apart)
     if spec.length > room:
         yield Finding(
             "block-length",
