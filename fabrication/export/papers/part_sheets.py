@@ -8,7 +8,7 @@ and height y of a hole over the lower edge.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +63,9 @@ def part_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> It
     area = page_area(paper).inset(_MARGIN)
     if not parts:
         return
-    along = _along(parts, area.width)
+    passing = _passing(jointed, parts)
+    told = {part.mark: _cuts(part, passing[part.mark]) for part in parts}
+    along = _along(parts, told, area.width)
     across = _scale(parts[0].width / _HIGHEST)
     height = _HEAD + _ABOVE + parts[0].width / across + _BELOW + _GAP
     per_page = max(1, int(area.height // height))
@@ -76,16 +78,16 @@ def part_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> It
             inside = page.inset(_MARGIN)
             for place, row in enumerate(chunk):
                 top = inside.y + inside.height - place * height
-                _draw(pen, row, inside.x, top, along, across, jointed)
+                _draw(pen, row, told[row.part.mark], inside.x, top, along, across, jointed)
 
         first, last = chunk[0].part.mark, chunk[-1].part.mark
         title = f"Strip {first}" if first == last else f"Strips {first} to {last}"
         yield Page(title, scale, draw)
 
 
-def _along(parts: Sequence[FlatPart], width: float) -> float:
+def _along(parts: Sequence[FlatPart], told: Mapping[str, Sequence[_Cut]], width: float) -> float:
     """The scale at which cuts are legible: no figures closer than half their pitch, most rows."""
-    gaps = np.concatenate([np.diff(np.sort([c.x for c in _cuts(p)])) for p in parts])
+    gaps = np.concatenate([np.diff(np.sort([c.x for c in told[p.mark]])) for p in parts])
     gaps = gaps[gaps > 1e-6]
     typical = float(np.quantile(gaps, 0.3)) if len(gaps) else parts[0].length
     longest = max(part.length for part in parts)
@@ -102,14 +104,33 @@ def _rows(part: FlatPart, room: float) -> Iterator[_Row]:
         yield _Row(part, k * room, min((k + 1) * room, part.length), k + 1, count)
 
 
-def _cuts(part: FlatPart) -> list[_Cut]:
-    """All places in order: both ends, slots, holes."""
-    found = [_Cut(0.0, _end(part, 0)), _Cut(part.length, _end(part, 1))]
+def _cuts(part: FlatPart, passing: Sequence[_Cut]) -> list[_Cut]:
+    """All places in order: both ends, slots, holes, and nodes where nothing is cut."""
+    found = [_Cut(0.0, _end(part, 0)), _Cut(part.length, _end(part, 1)), *passing]
     found += [_Cut(s.x, f"{s.partner} {s.node} w {s.width:.2f}") for s in part.slots]
     found += [
         _Cut(hole.x, f"{hole.node} d {hole.diameter:g} y {hole.y:.1f}") for hole in part.holes
     ]
     return sorted(found, key=lambda cut: cut.x)
+
+
+def _passing(jointed: Jointed, parts: Sequence[FlatPart]) -> dict[str, list[_Cut]]:
+    """Nodes on each strip where it has no cut: what is fixed to its side there."""
+    strips = jointed.strips.lamellas
+    taken = {
+        part.mark: np.array([*(s.x for s in part.slots), *(h.x for h in part.holes)])
+        for part in parts
+    }
+    found: dict[str, list[_Cut]] = {part.mark: [] for part in parts}
+    for node in jointed.strips.nodes:
+        for crossing in node.crossings:
+            strip = strips[crossing.lamella]
+            x = crossing.station - strip.start
+            free = np.abs(taken[strip.mark] - x).min(initial=np.inf) > 1.0
+            if free and 0.0 < x < strip.length:
+                others = [strips[c.lamella].mark for c in node.crossings if c is not crossing]
+                found[strip.mark].append(_Cut(x, f"{' '.join(others)} {node.name}"))
+    return found
 
 
 def _end(part: FlatPart, which: int) -> str:
@@ -128,7 +149,14 @@ def _depths(part: FlatPart) -> str:
 
 
 def _draw(
-    pen: Pen, row: _Row, x: float, top: float, along: float, across: float, jointed: Jointed
+    pen: Pen,
+    row: _Row,
+    told: Sequence[_Cut],
+    x: float,
+    top: float,
+    along: float,
+    across: float,
+    jointed: Jointed,
 ) -> None:
     part = row.part
     material = jointed.design.profile.material
@@ -145,7 +173,7 @@ def _draw(
     outline = corners(part.outline)
     flat = np.column_stack([x + (outline[:, 0] - row.low) / along, base + outline[:, 1] / across])
     _clipped(pen, flat, x, x + (row.high - row.low) / along)
-    cuts = [cut for cut in _cuts(part) if row.low - 1e-6 <= cut.x <= row.high + 1e-6]
+    cuts = [cut for cut in told if row.low - 1e-6 <= cut.x <= row.high + 1e-6]
     _figures(pen, cuts, x, base, part.width / across, row, along)
     for hole in part.holes:
         if row.low <= hole.x <= row.high:
