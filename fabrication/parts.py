@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -108,6 +108,7 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
     profile = jointed.strips.profile
     width, thickness = profile.width, profile.thickness
     parts = []
+    passing = uncut_nodes(jointed)
     for lamella in jointed.strips.lamellas:
         cuts = jointed.cuts[lamella.mark]
         slots = tuple(replace(slot, relief=relief) for slot in cuts.slots)
@@ -118,7 +119,10 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
                 mark=lamella.mark,
                 outline=outline(developed.length, width, slots),
                 slots=slots,
-                labels=_labels(lamella.mark, developed, slots, cuts.holes, width),
+                labels=(
+                    *_labels(lamella.mark, developed, slots, cuts.holes, width),
+                    *_passing_labels(passing[lamella.mark], width),
+                ),
                 width=width,
                 thickness=thickness,
                 development=developed,
@@ -127,6 +131,25 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
             )
         )
     return tuple(parts)
+
+
+def uncut_nodes(jointed: Jointed) -> dict[str, list[tuple[float, str, str]]]:
+    """By strip: x of every node where nothing is cut, what meets it there, and the node's name."""
+    strips = jointed.strips.lamellas
+    taken = {
+        mark: np.array([*(s.x for s in cuts.slots), *(h.x for h in cuts.holes)])
+        for mark, cuts in jointed.cuts.items()
+    }
+    found: dict[str, list[tuple[float, str, str]]] = {strip.mark: [] for strip in strips}
+    for node in jointed.strips.nodes:
+        for crossing in node.crossings:
+            strip = strips[crossing.lamella]
+            x = crossing.station - strip.start
+            others = [strips[c.lamella].mark for c in node.crossings if c is not crossing]
+            free = np.abs(taken[strip.mark] - x).min(initial=np.inf) > 1.0
+            if free and others and 0.0 < x < strip.length:
+                found[strip.mark].append((x, " ".join(others), node.name))
+    return found
 
 
 def _require_room(mark: str, slots: Sequence[Slot], length: float) -> None:
@@ -161,6 +184,14 @@ def _labels(
         labels.append(Label(slot.partner, slot.x, behind, min(largest, room)))
     labels.insert(0, _own_label(mark, developed.length, slots, holes, width))
     return tuple(labels)
+
+
+def _passing_labels(passing: Sequence[tuple[float, str, str]], width: float) -> Iterator[Label]:
+    """What is fixed to the side of a strip, across it where its middle must come."""
+    height = min(width / 8.0, 10.0)
+    for x, others, _ in passing:
+        small = min(height, 0.4 * width / (_LETTER * len(others)))
+        yield Label(others, x, width / 2.0, small, np.pi / 2.0)
 
 
 def _own_label(

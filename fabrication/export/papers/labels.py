@@ -10,6 +10,8 @@ from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.pdfgen.canvas import Canvas
 
+from fabrication.errors import OutputError
+from fabrication.export.papers.sheet_frame import printable
 from fabrication.parts import FlatPart
 
 _WIDTH, _HEIGHT = 70.0, 37.0
@@ -29,6 +31,11 @@ def write_labels(
     ----------
     name : of the project.
     material : left out where empty.
+
+    Raises
+    ------
+    OutputError
+        When the file cannot be written.
     """
     path = Path(path)
     canvas = Canvas(str(path), pagesize=A4, invariant=1)
@@ -39,7 +46,12 @@ def write_labels(
             canvas.showPage()
         row, column = divmod(place, _COLUMNS)
         _label(canvas, part, column * _WIDTH, 296.5 - (row + 1) * _HEIGHT, name, material)
-    canvas.save()
+    try:
+        canvas.save()
+    except OSError as error:
+        raise OutputError(
+            "The labels cannot be written", where=str(path), value=error.strerror or ""
+        ) from None
     return path
 
 
@@ -54,7 +66,8 @@ def _label(canvas: Canvas, part: FlatPart, x: float, y: float, name: str, materi
         ("Helvetica", 10.0, 11.0, between),
         ("Helvetica", 8.0, 6.0, ", ".join(word for word in (name, material) if word)),
     )
-    for font, largest, up, text in lines:
+    for font, largest, up, line in lines:
+        text = printable(line)
         room = (_WIDTH - 2.0 * _INSIDE) * mm
         fitting = largest * min(1.0, room / max(stringWidth(text, font, largest), 1.0))
         canvas.setFont(font, fitting)

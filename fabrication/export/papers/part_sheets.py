@@ -24,7 +24,7 @@ from fabrication.export.papers.sheet_frame import (
 )
 from fabrication.flattening import corners
 from fabrication.jointed import Jointed
-from fabrication.parts import FlatPart
+from fabrication.parts import FlatPart, uncut_nodes
 from gridshell.arrays import Floats
 
 _SCALES = (1.0, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0)
@@ -63,8 +63,8 @@ def part_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> It
     area = page_area(paper).inset(_MARGIN)
     if not parts:
         return
-    passing = _passing(jointed, parts)
-    told = {part.mark: _cuts(part, passing[part.mark]) for part in parts}
+    uncut = uncut_nodes(jointed)
+    told = {part.mark: _cuts(part, uncut[part.mark]) for part in parts}
     along = _along(parts, told, area.width)
     across = _scale(parts[0].width / _HIGHEST)
     height = _HEAD + _ABOVE + parts[0].width / across + _BELOW + _GAP
@@ -104,33 +104,15 @@ def _rows(part: FlatPart, room: float) -> Iterator[_Row]:
         yield _Row(part, k * room, min((k + 1) * room, part.length), k + 1, count)
 
 
-def _cuts(part: FlatPart, passing: Sequence[_Cut]) -> list[_Cut]:
+def _cuts(part: FlatPart, uncut: Sequence[tuple[float, str, str]]) -> list[_Cut]:
     """All places in order: both ends, slots, holes, and nodes where nothing is cut."""
-    found = [_Cut(0.0, _end(part, 0)), _Cut(part.length, _end(part, 1)), *passing]
+    found = [_Cut(0.0, _end(part, 0)), _Cut(part.length, _end(part, 1))]
+    found += [_Cut(x, f"{others} {node}") for x, others, node in uncut]
     found += [_Cut(s.x, f"{s.partner} {s.node} w {s.width:.2f}") for s in part.slots]
     found += [
         _Cut(hole.x, f"{hole.node} d {hole.diameter:g} y {hole.y:.1f}") for hole in part.holes
     ]
     return sorted(found, key=lambda cut: cut.x)
-
-
-def _passing(jointed: Jointed, parts: Sequence[FlatPart]) -> dict[str, list[_Cut]]:
-    """Nodes on each strip where it has no cut: what is fixed to its side there."""
-    strips = jointed.strips.lamellas
-    taken = {
-        part.mark: np.array([*(s.x for s in part.slots), *(h.x for h in part.holes)])
-        for part in parts
-    }
-    found: dict[str, list[_Cut]] = {part.mark: [] for part in parts}
-    for node in jointed.strips.nodes:
-        for crossing in node.crossings:
-            strip = strips[crossing.lamella]
-            x = crossing.station - strip.start
-            free = np.abs(taken[strip.mark] - x).min(initial=np.inf) > 1.0
-            if free and 0.0 < x < strip.length:
-                others = [strips[c.lamella].mark for c in node.crossings if c is not crossing]
-                found[strip.mark].append(_Cut(x, f"{' '.join(others)} {node.name}"))
-    return found
 
 
 def _end(part: FlatPart, which: int) -> str:
