@@ -36,7 +36,7 @@ KERNEL_ERRORS = tuple(
 )
 """The kernel's own exceptions have no common base in Python."""
 
-_VOLUME_ACCURACY = 1e-7
+_VOLUME_ACCURACY = 1e-9
 
 
 def solids(structure: Structure, parts: Sequence[FlatPart]) -> list[build123d.Solid]:
