@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from fabrication.arrangement import LEFT, RIGHT
 from fabrication.export.papers.sheet_frame import MEDIUM, THIN, Area, Page, Pen, page_area
 from fabrication.flattening import corners
 from fabrication.jointed import BillLine, Jointed
@@ -28,6 +29,8 @@ _REACH = 1.1
 _SCALES = (1.0, 2.0, 2.5, 5.0, 10.0, 20.0)
 _SAMPLES = 25
 _MARGIN = 14.0
+_NOTES = 7
+"""Lines of notes at most."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,8 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
     for k in _chosen(regular):
         node, frame = regular[k], frames[k]
         bands = [*_strip_bands(jointed, parts, frame), *_connector_bands(jointed, frame)]
-        notes = _notes(jointed, parts, node)
+        notes = _notes(jointed, parts, node, frame)
+        levels = _levels(jointed, frame)
         half = _REACH * jointed.design.profile.width
         scale = _scale(4.4 * half / area.width, 2.2 * half / (area.height - 14.0))
 
@@ -64,6 +68,7 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
             half: float = half,
             angle: float = float(node.angle or 0.0),
             width: float = jointed.design.profile.width,
+            levels: Sequence[float] = levels,
         ) -> None:
             middle = page.y + page.height / 2.0 + 5.0
             left, right = page.x + 0.26 * page.width, page.x + 0.68 * page.width
@@ -73,7 +78,8 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
                 _line(pen, band, np.stack([left + flat[:, 0], middle + flat[:, 1]], axis=1))
                 _line(pen, band, np.stack([right + flat[:, 0], middle + up], axis=1))
             _angle(pen, left, middle, angle, half / scale)
-            _height(pen, right - half / scale - 6.0, middle, width, scale)
+            for level in levels:
+                _height(pen, right - half / scale - 6.0, middle + level / scale, width, scale)
             top = middle + half / scale + 8.0
             pen.text(left, top, "along the node axis", align="middle")
             pen.text(right, top, "from the side, across the bisector", align="middle")
@@ -96,8 +102,21 @@ def _angle(pen: Pen, x: float, y: float, angle: float, radius: float) -> None:
     pen.text(x + 0.85 * radius + 2.0, y - 1.2, f"{np.degrees(angle):.2f} deg", height=3.0)
 
 
+def _levels(jointed: Jointed, frame: Frame) -> list[float]:
+    """Heights over the node at which the middles of strips pass it, mm."""
+    reach = _REACH * jointed.design.profile.width
+    found: set[float] = set()
+    for strip in jointed.strips.lamellas:
+        near = _near(strip, frame, reach)
+        if near is not None:
+            points = strip.axis.spline(np.linspace(*near, _SAMPLES))
+            nearest = points[np.linalg.norm(frame.flat(points), axis=1).argmin()]
+            found.add(round(float(frame.distance(nearest)), 0) + 0.0)
+    return sorted(found)
+
+
 def _height(pen: Pen, x: float, y: float, width: float, scale: float) -> None:
-    """The strip's width beside the view from the side."""
+    """The strip's width beside the view from the side; *y* is its middle."""
     half = width / 2.0 / scale
     pen.line([(x, y - half), (x, y + half)], width=THIN)
     for end in (y - half, y + half):
@@ -216,29 +235,44 @@ def _connector_bands(jointed: Jointed, frame: Frame) -> Iterator[_Band]:
                     yield _Band(np.array([a, b]), closed=False, width=THIN, grey=0.5)
 
 
-def _notes(jointed: Jointed, parts: Sequence[FlatPart], node: Node) -> list[str]:
+def _notes(jointed: Jointed, parts: Sequence[FlatPart], node: Node, frame: Frame) -> list[str]:
+    """What the drawing does not dimension, each a line."""
     profile = jointed.design.profile
-    slots = [slot for part in parts for slot in part.slots if slot.node.rstrip("LR") == node.name]
     angle = float(np.degrees(node.angle or 0.0))
-    notes = [
-        f"Node angle {angle:.2f} degrees; strips {profile.width:g} x {profile.thickness:g} mm",
+    notes = [f"Node angle {angle:.2f} degrees; strips {profile.width:g} x {profile.thickness:g} mm"]
+    slots = [
+        (part.mark[0], slot)
+        for part in parts
+        for slot in part.slots
+        if slot.node.rstrip(LEFT + RIGHT) == node.name
     ]
     if slots:
-        widths, depths = [s.width for s in slots], [s.depth for s in slots]
-        notes.append(
-            f"Slots {min(widths):.2f} to {max(widths):.2f} mm wide, {max(depths):.1f} mm deep"
-        )
+        told = []
+        for family in sorted({family for family, _ in slots}):
+            widths = [f"{slot.width:.2f}" for own, slot in slots if own == family]
+            told.append(f"in {family} {' / '.join(sorted(set(widths)))}")
+        depth = max(slot.depth for _, slot in slots)
+        notes.append(f"Slots {', '.join(told)} mm wide, {depth:.1f} mm deep")
     notes += [
         f"{line.item}: {line.size}{f', {line.note}' if line.note else ''}"
-        for line in _kinds(jointed)
+        for line in _bill_here(jointed, frame)
     ]
-    return notes[:7]
+    return notes[:_NOTES]
 
 
-def _kinds(jointed: Jointed) -> Iterator[BillLine]:
-    """The first line of every item of the bill."""
+def _bill_here(jointed: Jointed, frame: Frame) -> Iterator[BillLine]:
+    """Lines of the bill for what is drawn; of several shapes those at the node."""
+    reach = _REACH * jointed.design.profile.width
+    here = {
+        kind.shapes[body.shape].mark
+        for kind in jointed.connectors
+        for body in kind.bodies
+        if np.linalg.norm(body.frame.origin - frame.origin) <= reach
+    }
+    marks = {shape.mark for kind in jointed.connectors for shape in kind.shapes}
     seen: set[str] = set()
     for line in jointed.bill:
-        if line.item not in seen:
+        mark = line.size.split(":")[0]
+        if mark in here or (mark not in marks and line.item not in seen):
             seen.add(line.item)
             yield line

@@ -106,4 +106,4 @@ def _bar(pen: Pen, area: Area, scale: float) -> None:
     for at in (x, x + width / 2.0, x + width):
         pen.line([(at, y), (at, y + 1.5)], width=MEDIUM)
     pen.text(x + width / 2.0, y + 2.5, f"{length / 1e3:g} m", align="middle")
-    pen.text(x, y - 4.0, "A solid, B dashed", height=2.2)
+    pen.text(x + width, y - 4.0, "A solid, B dashed", height=2.2, align="right")

@@ -39,9 +39,14 @@ def _row(jointed: Jointed, node: Node, widths: dict[str, list[str]]) -> tuple[st
     crossings = [(strips[c.lamella], c.station) for c in node.crossings]
     return (
         node.name,
-        *(f"{value:.1f}" for value in node.position.tolist()),
+        *(f"{value:.1f}" for value in (node.position.round(1) + 0.0).tolist()),
         "-" if node.angle is None else f"{np.degrees(node.angle):.2f}",
         " ".join(strip.mark for strip, _ in crossings),
-        " ".join(f"{station - strip.start:.1f}" for strip, station in crossings),
+        " ".join(_place(station - strip.start, strip.length) for strip, station in crossings),
         " / ".join(widths.get(node.name, ["-"])),
     )
+
+
+def _place(x: float, length: float) -> str:
+    """Where a node lies on a strip, mm; a piece that is cut at the node ends there."""
+    return f"{x:.1f}" if 0.0 <= x <= length else "end"

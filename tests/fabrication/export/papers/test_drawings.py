@@ -67,7 +67,8 @@ def test_every_node_is_in_the_schedule_with_its_place(drawn):
     for node in jointed.strips.nodes:
         assert re.search(rf"^{node.name}$", table, re.MULTILINE)
         for value in node.position.tolist():
-            assert f"{value:.1f}" in table
+            assert f"{round(value, 1) + 0.0:.1f}" in table
+    assert "-0.0" not in table
 
 
 def test_the_key_plan_shows_every_lamella(drawn):
@@ -82,6 +83,21 @@ def test_the_joint_is_drawn_with_its_angle(drawn):
     pages = of_kind(texts, "Joint at N")
     assert pages
     assert all(re.search(r"Node angle \d\d\.\d\d degrees", text) for text in pages)
+
+
+def test_the_joint_names_what_stands_at_its_node_and_dimensions_every_level(drawn):
+    jointed, _, _, texts = drawn
+    for text in of_kind(texts, "Joint at N"):
+        node = re.search(r"^Joint at (N\d+)$", text, re.MULTILINE)[1]
+        for kind in jointed.connectors:
+            marks = {
+                kind.shapes[body.shape].mark
+                for body in kind.bodies
+                if body.mark.split("-")[0] == node and kind.name in ("studs", "star washers")
+            }
+            assert all(f"{mark}: " in text for mark in marks)
+        levels = 2 if any(kind.name == "studs" for kind in jointed.connectors) else 1
+        assert len(re.findall(r"^ *100$", text, re.MULTILINE)) == levels
 
 
 def test_bill_findings_and_index_are_there(drawn):
