@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from fabrication.lamella import Lamella, curve_beside
-from fabrication.node import Crossing, Node
+from fabrication.node import Crossing, Node, node_angles
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, Indices, Points, Vectors, unit
 
@@ -173,7 +173,7 @@ def _crossed(
     axes = normal * side
     turned = _turned(strips, (first, second), stations, axes)
     nodes: dict[str, list[Node]] = {}
-    angles = _angles(tangents[0], tangents[1], axes)
+    angles = node_angles(tangents[0], tangents[1], axes)
     for row, (n, a, b) in enumerate(pairs):
         base = regular[n]
         nodes.setdefault(base.name, []).append(
@@ -268,9 +268,3 @@ def _spline(strip: Lamella, x: Floats, y: Vectors, moment: Vectors, spread: Floa
     slope = np.where(known[:, None], moment / np.where(known, spread, 1.0)[:, None], smooth(x, 1))
     held = CubicHermiteSpline(x, y, slope)
     return CubicSpline.construct_fast(held.c, held.x, smooth.extrapolate, smooth.axis)
-
-
-def _angles(first: Vectors, second: Vectors, axes: Vectors) -> Floats:
-    """(n,) turn from the line of family 1 to that of family 2, counter-clockwise (eq. 4)."""
-    across = np.einsum("nc,nc->n", np.cross(first, second), axes)
-    return np.asarray(np.arctan2(across, np.einsum("nc,nc->n", first, second)) % np.pi)

@@ -18,6 +18,12 @@ COLOUR = (0.45, 0.47, 0.50)
 HEAD, NUT, FLATS, FREE = 0.65, 0.9, 1.6, 0.3
 """Heights of head and nut, distance across the flats, free thread: all in diameters."""
 
+HOLE_PLAY = 1.0
+"""Of a bolt in its hole, mm: M8 in 9."""
+
+EDGE_DISTANCE = 1.2
+"""From the middle of a hole to an edge, in diameters of the hole (EN 1993-1-8, Table 3.3)."""
+
 _STEP = 5.0
 """Between lengths that are sold, mm."""
 

@@ -13,16 +13,13 @@ from math import isfinite, pi, sin, tan
 import numpy as np
 
 from fabrication.cut import SQUARE, Edge, Relief, Slot, area, outline
-from fabrication.parts import Label
+from fabrication.parts import LETTER, Label
 from fabrication.stock import Profile
 from gridshell import SettingError
 from gridshell.arrays import Floats
 
 GRADES = (-0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4)
 """Added to the drawn clearance from slot to slot, mm."""
-
-_LETTER = 0.9
-"""Width of a letter over its height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,9 +109,9 @@ def _cut(
     """Slots far enough apart for their labels and for a web three times the thickness."""
     height = max(min(profile.width / 8.0, 10.0), 2.0)
     told = [f"{c:+.2f}" for c in clearances.tolist()]
-    text = _LETTER * height * max(map(len, told))
+    text = LETTER * height * max(map(len, told))
     pitch = max(1.3 * text, float(widths[-1]) + max(3.0 * profile.thickness, 10.0))
-    start = 1.3 * _LETTER * height * len(mark) + pitch / 2.0
+    start = 1.3 * LETTER * height * len(mark) + pitch / 2.0
     depth = profile.width / 2.0 + beyond
     slots = tuple(
         Slot(start + k * pitch, w, depth, Edge.UPPER, c, mark, relief)

@@ -10,17 +10,22 @@ SAGITTA = 0.01
 """Between an arc and its lines, mm; more only where an arc would take over 300 of them."""
 
 
-def flattened(rows: Floats, *, closed: bool) -> Floats:
-    """(n, 2) points of a line with bulges (k, 3); closed ones begin again with the first."""
+def flattened(rows: Floats, *, closed: bool, step: float | None = None) -> Floats:
+    """(n, 2) points of a line with bulges (k, 3); closed ones begin again with the first.
+
+    Parameters
+    ----------
+    step : largest turn of an arc between two points, radians, in place of the usual sagitta.
+    """
     if closed and len(rows):
         rows = np.concatenate([rows, rows[:1]])
     if not rows[:-1, 2].any():
         return rows[:, :2]
     with np.errstate(all="ignore"):
-        return _with_arcs(rows)
+        return _with_arcs(rows, step)
 
 
-def _with_arcs(rows: Floats) -> Floats:
+def _with_arcs(rows: Floats, step: float | None) -> Floats:
     """(n, 2) points of an open line (k, 3); not finite where its numbers are absurd."""
     bulge, start = rows[:-1, 2], rows[:-1, :2]
     chord = np.diff(rows[:, :2], axis=0)
@@ -28,8 +33,9 @@ def _with_arcs(rows: Floats) -> Floats:
     sweep = 4.0 * np.arctan(bulge)
     curved = (np.abs(sweep) > 0.0) & (length > 0.0)
     radius = np.where(curved, length / (2.0 * np.abs(np.sin(sweep / 2.0)) + 1e-300), 1.0)
-    step = 2.0 * np.arccos(np.clip(1.0 - SAGITTA / radius, -1.0, 1.0))
-    count = np.where(curved, np.ceil(np.abs(sweep) / np.maximum(step, 0.02)), 1).astype(int)
+    fine = 2.0 * np.arccos(np.clip(1.0 - SAGITTA / radius, -1.0, 1.0))
+    turn = np.maximum(fine, 0.02) if step is None else step
+    count = np.where(curved, np.ceil(np.abs(sweep) / turn), 1).astype(int)
     first = np.repeat(np.arange(len(count)), count)
     place = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
     share = place / count[first]
@@ -49,6 +55,6 @@ def _on_arc(start: Floats, chord: Floats, sweep: Floats, share: Floats) -> Float
     return np.asarray(start + reach[:, None] * np.stack([c * x - s * y, s * x + c * y], axis=1))
 
 
-def corners(outline: Floats) -> Floats:
+def corners(outline: Floats, step: float | None = None) -> Floats:
     """(n, 2) corners of a closed outline (k, 2), or (k, 3) with bulges: arcs as short lines."""
-    return outline if outline.shape[1] == 2 else flattened(outline, closed=True)[:-1]
+    return outline if outline.shape[1] == 2 else flattened(outline, closed=True, step=step)[:-1]

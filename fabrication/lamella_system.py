@@ -16,6 +16,7 @@ from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_findings
 from fabrication.finding import Finding
 from fabrication.fitting import Fit, fit
 from fabrication.flat_state import FlatState
+from fabrication.joint_sections import SlottedJoint
 from fabrication.jointed import Jointed
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.lamella_sections import PapersSection
@@ -152,6 +153,7 @@ class LamellaSystem:
         """The report on lamellas."""
         from fabrication.export.report import write_report
 
+        joint = self.project.joint
         write_report(
             path,
             name=self.project.name,
@@ -160,7 +162,7 @@ class LamellaSystem:
             parts=self.parts,
             stress=self.stress,
             sheets=self.sheets[0].sheets,
-            clearance=getattr(self.project.joint, "clearance", None),
+            clearance=joint.clearance if isinstance(joint, SlottedJoint) else None,
             facade=None if self.facade is None else self.facade.built,
             pictures=pictures,
         )

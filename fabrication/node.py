@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gridshell.arrays import Floats
+import numpy as np
+
+from gridshell.arrays import Floats, Indices, Vectors
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,3 +55,27 @@ class Node:
     def singular(self) -> bool:
         """Whether more than two lamellas end here, so that no two of them cross."""
         return self.angle is None and len(self.crossings) > 2
+
+
+def node_angles(first: Vectors, second: Vectors, axes: Vectors) -> Floats:
+    """(n,) turn from the line of family 1 to that of family 2, counter-clockwise (eq. 4), radians.
+
+    Parameters
+    ----------
+    first, second : (n, 3) unit tangents of the two lamellas.
+    axes : (n, 3) unit node axes, about which the turn is counted; it lies in [0, pi).
+    """
+    across = np.einsum("nc,nc->n", np.cross(first, second), axes)
+    return np.asarray(np.arctan2(across, np.einsum("nc,nc->n", first, second)) % np.pi)
+
+
+def rows_by_lamella(nodes: Sequence[Node]) -> dict[int, tuple[Indices, Floats]]:
+    """By lamella the numbers of the *nodes* it passes, and its stations there, mm."""
+    found: dict[int, list[tuple[int, float]]] = {}
+    for row, node in enumerate(nodes):
+        for crossing in node.crossings:
+            found.setdefault(crossing.lamella, []).append((row, crossing.station))
+    return {
+        lamella: (np.array([row for row, _ in own]), np.array([s for _, s in own]))
+        for lamella, own in found.items()
+    }

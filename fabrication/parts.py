@@ -16,7 +16,7 @@ from fabrication.unroll import Development, unroll
 from gridshell import SettingError
 from gridshell.arrays import Floats
 
-_LETTER = 0.9
+LETTER = 0.9
 """Width of a letter over its height."""
 
 
@@ -179,7 +179,7 @@ def _labels(
     labels = []
     for k, slot in enumerate(slots):
         beside = [abs(slot.x - s.x) for s in (*slots[max(k - 1, 0) : k], *slots[k + 1 : k + 2])]
-        room = 0.9 * min(beside, default=np.inf) / (_LETTER * len(slot.partner))
+        room = 0.9 * min(beside, default=np.inf) / (LETTER * len(slot.partner))
         behind = 0.2 * width if slot.edge is Edge.UPPER else 0.8 * width
         labels.append(Label(slot.partner, slot.x, behind, min(largest, room)))
     labels.insert(0, _own_label(mark, developed.length, slots, holes, width))
@@ -190,7 +190,7 @@ def _passing_labels(passing: Sequence[tuple[float, str, str]], width: float) -> 
     """What is fixed to the side of a strip, across it where its middle must come."""
     height = min(width / 8.0, 10.0)
     for x, others, _ in passing:
-        small = min(height, 0.4 * width / (_LETTER * len(others)))
+        small = min(height, 0.4 * width / (LETTER * len(others)))
         yield Label(others, x, width / 2.0, small, np.pi / 2.0)
 
 
@@ -202,7 +202,7 @@ def _own_label(
     taken += [(h.x - h.diameter / 2.0, h.x + h.diameter / 2.0) for h in holes]
     walls = [(0.0, 0.0), *sorted(taken), (length, length)]
     height = 1.5 * min(width / 8.0, 10.0)
-    needed = 2.0 * (len(mark) + 1.0) * _LETTER * height
+    needed = 2.0 * (len(mark) + 1.0) * LETTER * height
     free, reached = [], 0.0
     for low, high in walls:
         free.append((reached, low))

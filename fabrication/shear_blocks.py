@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fabrication.arrangement import Arrangement
-from fabrication.bolts import bolt_bodies, bolt_length
+from fabrication.bolts import HOLE_PLAY, bolt_bodies, bolt_length
 from fabrication.cut import Hole
 from fabrication.finding import Finding, Severity
 from fabrication.jointed import BillLine, Feature, Fixture
@@ -27,7 +27,6 @@ from gridshell import SettingError
 from gridshell.arrays import Floats, unit
 
 COLOUR = (0.80, 0.66, 0.45)
-_HOLE_PLAY = 1.0
 _SEAT = 0.2
 """Between a bolt's head and the bent strip it lies on, mm."""
 
@@ -128,7 +127,7 @@ def shear_blocks(spec: ShearBlock, design: Structure, made: Arrangement, *, keep
                 strip = made.strips.lamellas[i]
                 for name, at, position in zip(names, stations, positions, strict=True):
                     x, y = float(at - strip.start), profile.width / 2.0
-                    hole = Hole(x, y, spec.bolt + _HOLE_PLAY, name, f"bolt M{spec.bolt:g}")
+                    hole = Hole(x, y, spec.bolt + HOLE_PLAY, name, f"bolt M{spec.bolt:g}")
                     holes[strip.mark].append(hole)
                     fixtures.append(Fixture(strip.mark, name, Feature.HOLE, x, y, position))
     clear = np.concatenate(rooms) if rooms else np.zeros(0)
@@ -228,7 +227,7 @@ def _bolts(
 
 def _lines(spec: ShearBlock, blocks: Prisms) -> Iterator[BillLine]:
     used = Counter(body.shape for body in blocks.bodies)
-    drilled = f", drilled {spec.bolt + _HOLE_PLAY:g} mm" if spec.bolt > 0.0 else ", glued"
+    drilled = f", drilled {spec.bolt + HOLE_PLAY:g} mm" if spec.bolt > 0.0 else ", glued"
     for number, shape in enumerate(blocks.shapes):
         x, y = np.ptp(shape.outline[:, :2], axis=0)
         yield BillLine(

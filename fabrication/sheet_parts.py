@@ -15,16 +15,13 @@ from fabrication.connector import connector_mark
 from fabrication.connector_pieces import ConnectorPiece
 from fabrication.outlines import outline_area
 from fabrication.panel import Panel
-from fabrication.parts import Label
+from fabrication.parts import LETTER, Label
 from fabrication.shapes import Shape
 from fabrication.support import SupportPlate, plate_mark
 from gridshell.arrays import Floats, frozen
 
 _LARGEST, _OWN, _ASIDE = 25.0, 0.14, 0.6
 """Height of marks: at most, mm; over the part's width; of a neighbour's mark over the own one."""
-
-_LETTER = 0.9
-"""Width of a letter over its height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +68,12 @@ def star_piece(piece: ConnectorPiece) -> SheetPiece:
     connector, spec = piece.connector, piece.connector.spec
     outline = np.array(connector.section())
     outline[:, :2] += spec.radius
-    height = min(_LARGEST, 1.5 * spec.floor / (_LETTER * len(piece.mark)))
+    height = min(_LARGEST, 1.5 * spec.floor / (LETTER * len(piece.mark)))
     labels = [Label(piece.mark, spec.radius, spec.radius, height)]
     along = (spec.floor + spec.radius) / 2.0
     for arm in connector.arms:
         text = plate_mark(arm.edge)
-        small = min(_ASIDE * height, 0.8 * spec.depth / (_LETTER * len(text)))
+        small = min(_ASIDE * height, 0.8 * spec.depth / (LETTER * len(text)))
         out = np.array([np.cos(arm.angle), np.sin(arm.angle)])
         side = spec.slot_width / 2.0 + small
         x, y = spec.radius + along * out + side * np.array([-out[1], out[0]])
@@ -99,7 +96,7 @@ def shape_piece(mark: str, shape: Shape) -> SheetPiece:
     length, width = _reach(outline).max(axis=0).tolist()
     circles = np.array([_circle(opening, low) for opening in shape.openings]).reshape(-1, 3)
     hole = float(circles[:, 2].max(initial=0.0))
-    height = min(_LARGEST, 0.12 * width, 0.25 * length / (_LETTER * len(shape.mark)))
+    height = min(_LARGEST, 0.12 * width, 0.25 * length / (LETTER * len(shape.mark)))
     y = width / 2.0 - (hole / 2.0 + height if hole else 0.0)
     return SheetPiece(
         mark=mark,
@@ -154,13 +151,13 @@ def _labels(mark: str, outline: Floats, beside: Sequence[str | None]) -> tuple[L
     following = np.roll(outline, -1, axis=0)
     run = following - outline
     side = np.linalg.norm(run, axis=1)
-    height = min(_LARGEST, _OWN * room, float(side.max()) / (_LETTER * (len(mark) + 2)))
+    height = min(_LARGEST, _OWN * room, float(side.max()) / (LETTER * (len(mark) + 2)))
     middle = outline.mean(axis=0)
     labels = [Label(mark, float(middle[0]), float(middle[1]), height)]
     for c, text in enumerate(beside):
         if text is None:
             continue
-        small = min(_ASIDE * height, float(side[c]) / (_LETTER * (len(text) + 2)))
+        small = min(_ASIDE * height, float(side[c]) / (LETTER * (len(text) + 2)))
         inward = np.array([-run[c, 1], run[c, 0]]) / side[c]
         place = (outline[c] + following[c]) / 2.0 + 1.2 * small * inward
         labels.append(Label(text, float(place[0]), float(place[1]), small, _upright(run[c])))

@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from fabrication.bolts import bolt_length
+from fabrication.bolts import EDGE_DISTANCE, HOLE_PLAY, bolt_length
 from fabrication.jointed import BillLine
 from fabrication.parts import Label
 from fabrication.sheet_parts import SheetPiece
@@ -15,11 +15,8 @@ from fabrication.stock import Material, require_positive
 from gridshell import SettingError
 from gridshell.arrays import Floats, frozen
 
-_PLAY = 1.0
-"""Of a bolt in its hole, mm."""
-
-_EDGE, _PITCH = 1.2, 2.2
-"""From a hole to an edge, and between two holes, in diameters of the hole (EN 1993-1-8, 3.3)."""
+_PITCH = 2.2
+"""Between two holes, in diameters of the hole (EN 1993-1-8, Table 3.3)."""
 
 
 class Sides(Enum):
@@ -58,7 +55,8 @@ class SplicePlate:
     def __post_init__(self) -> None:
         for key in ("length", "width", "thickness", "bolt", "bolts"):
             require_positive(f"splice.{key}", getattr(self, key))
-        pitch, needed = self.length / (2.0 * self.bolts), max(_PITCH, 2.0 * _EDGE) * self.hole
+        pitch = self.length / (2.0 * self.bolts)
+        needed = max(_PITCH, 2.0 * EDGE_DISTANCE) * self.hole
         if pitch < needed:
             raise SettingError(
                 "The holes of the splice plate are too near to each other",
@@ -68,19 +66,19 @@ class SplicePlate:
                 f"{self.bolt:g} mm on either side",
                 advice="a longer plate, or fewer or smaller bolts",
             )
-        if self.width < 2.0 * _EDGE * self.hole:
+        if self.width < 2.0 * EDGE_DISTANCE * self.hole:
             raise SettingError(
                 "The splice plate is too narrow for its holes",
                 where="splice.width",
                 value=f"{self.width:g} mm",
-                limit=f"at least {2.0 * _EDGE * self.hole:.1f} mm",
+                limit=f"at least {2.0 * EDGE_DISTANCE * self.hole:.1f} mm",
                 advice="a wider plate, or smaller bolts",
             )
 
     @property
     def hole(self) -> float:
         """Diameter of the holes, mm."""
-        return self.bolt + _PLAY
+        return self.bolt + HOLE_PLAY
 
     @property
     def offsets(self) -> Floats:

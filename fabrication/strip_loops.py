@@ -15,6 +15,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from fabrication.parts import FlatPart
+from fabrication.shapes import with_bulges
 from fabrication.sides import Side
 from gridshell.arrays import Floats, Points
 
@@ -90,19 +91,13 @@ class ArcImages:
 
 def strip_loops(part: FlatPart) -> tuple[Loop, ...]:
     """The outline and the holes of *part*; holes run clockwise, as two half circles each."""
-    near, far = (_rows(face) for face in part.faces)
+    near, far = (with_bulges(face) for face in part.faces)
     loops = [_loop(np.stack([near, far]))]
     for x, y, diameter in part.circles.tolist():
         half = diameter / 2.0
         rows = np.array([[x - half, y, -1.0], [x + half, y, -1.0]])
         loops.append(_loop(np.stack([rows, rows])))
     return tuple(loops)
-
-
-def _rows(outline: Floats) -> Floats:
-    if outline.shape[1] == 3:
-        return outline
-    return np.column_stack([outline, np.zeros(len(outline))])
 
 
 def _loop(rows: Floats) -> Loop:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from fabrication.lamella import AxisCurve, Lamella, axis_curve
-from fabrication.node import Crossing, Node
+from fabrication.node import Crossing, Node, node_angles
 from fabrication.stock import Profile
 from gridshell import DiagonalMesh, Polyline, SettingError, polylines
 from gridshell.arrays import Floats, Mask, Vectors, unit
@@ -196,7 +196,7 @@ def _nodes(
             crossings[vertex].append(Crossing(i, station))
     star = _star_normals(net)
     tilt = np.arccos(np.clip(np.abs(np.einsum("nc,nc->n", node_axes, star)), 0.0, 1.0))
-    angle = _angles(tangents, node_axes)
+    angle = node_angles(tangents[:, 0], tangents[:, 1], node_axes)
     return tuple(
         Node(
             name=f"N{v + 1}",
@@ -216,10 +216,3 @@ def _axis(axis: Floats, crossings: list[Crossing], lamellas: tuple[Lamella, ...]
         return axis
     (alone,) = crossings
     return np.asarray(lamellas[alone.lamella].frames(np.array([alone.station])).n[0])
-
-
-def _angles(tangents: Floats, axes: Vectors) -> Floats:
-    """(n,) turn from the line of family 1 to that of family 2, counter-clockwise (eq. 4)."""
-    first, second = tangents[:, 0], tangents[:, 1]
-    across = np.einsum("nc,nc->n", np.cross(first, second), axes)
-    return np.asarray(np.arctan2(across, np.einsum("nc,nc->n", first, second)) % np.pi)

@@ -15,6 +15,7 @@ from manifold3d import triangulate
 
 from fabrication.colours import css
 from fabrication.export.shell import LIGHT
+from fabrication.flattening import corners
 from fabrication.shapes import Prisms, Shape
 from gridshell.arrays import Floats, Indices, Points
 
@@ -74,7 +75,7 @@ def _instances(
 
 def shape_mesh(shape: Shape) -> tuple[Points, Indices]:
     """Points (n, 3), mm, and triangles (m, 3), facing outwards, of a shape with its openings."""
-    rings = [flattened(shape.outline), *(flattened(o)[::-1] for o in shape.openings)]
+    rings = [corners(shape.outline, _STEP), *(corners(o, _STEP)[::-1] for o in shape.openings)]
     flat = np.concatenate(rings)
     caps = np.asarray(triangulate(rings), dtype=np.int64).reshape(-1, 3)
     count = len(flat)
@@ -90,24 +91,3 @@ def shape_mesh(shape: Shape) -> tuple[Points, Indices]:
         np.stack([here, after + count, here + count], axis=1),
     ]
     return points, np.concatenate([caps[:, ::-1], caps + count, *walls])
-
-
-def flattened(outline: Floats) -> Floats:
-    """(n, 2) corners of an outline (k, 3) whose arcs are cut into chords."""
-    start, end = outline[:, :2], np.roll(outline[:, :2], -1, axis=0)
-    return np.concatenate(
-        [_chords(a, b, bulge) for a, b, bulge in zip(start, end, outline[:, 2], strict=True)]
-    )
-
-
-def _chords(start: Floats, end: Floats, bulge: float) -> Floats:
-    """(n, 2) points of a piece from *start* to before *end*; the bulge is tan(sweep / 4)."""
-    if bulge == 0.0:
-        return start[None]
-    sweep = 4.0 * np.arctan(bulge)
-    count = int(np.ceil(abs(sweep) / _STEP))
-    turn = sweep * np.arange(count) / count
-    half = (end - start) / 2.0
-    hub = start + half + np.array([-half[1], half[0]]) * (1.0 - bulge**2) / (2.0 * bulge)
-    arm, across = start - hub, np.array([hub[1] - start[1], start[0] - hub[0]])
-    return np.asarray(hub + np.cos(turn)[:, None] * arm + np.sin(turn)[:, None] * across)

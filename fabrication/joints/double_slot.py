@@ -18,13 +18,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fabrication.arrangement import LEFT, RIGHT, Arrangement, Lane, arranged
-from fabrication.bolts import bolt_bodies, bolt_length
+from fabrication.bolts import EDGE_DISTANCE, HOLE_PLAY, bolt_bodies, bolt_length
 from fabrication.finding import Finding, Severity
 from fabrication.jointed import BillLine, Jointed
 from fabrication.joints.half_lap import HalfLap, half_lap, slot_findings
 from fabrication.joints.joint import Joint
 from fabrication.joints.node_frames import bisector_frames, node_tangents
-from fabrication.node import Node
+from fabrication.node import Node, rows_by_lamella
 from fabrication.outlines import Frame
 from fabrication.shapes import Body, Prisms, Shape, circle
 from fabrication.stock import Material, require_distance, require_positive
@@ -35,12 +35,6 @@ from gridshell.arrays import Floats
 _WASHER_COLOUR = (0.75, 0.77, 0.80)
 _ALIKE = np.radians(0.5)
 """Node angles are rounded to steps of this for the washers: their arms need not be exact."""
-
-_HOLE_PLAY = 1.0
-"""Of a bolt in its hole, mm: M8 in 9."""
-
-_EDGE_DISTANCE = 1.2
-"""From the middle of a hole to the edge, in diameters of the hole (EN 1993-1-8, Table 3.3)."""
 
 
 @dataclass(frozen=True)
@@ -159,22 +153,17 @@ class DoubleSlotJoint(Joint):
     ) -> tuple[list[Frame], Floats, Floats]:
         """Frames at *nodes*, and how low and how high the strips reach under a washer, mm."""
         names = {node.name: k for k, node in enumerate(nodes)}
-        reach: dict[int, list[tuple[int, float]]] = {}
-        for node in made.strips.nodes:
-            if node.regular:
-                number = names[node.name.rstrip(LEFT + RIGHT)]
-                for crossing in node.crossings:
-                    reach.setdefault(crossing.lamella, []).append((number, crossing.station))
+        pairs = [node for node in made.strips.nodes if node.regular]
+        owner = np.array([names[node.name.rstrip(LEFT + RIGHT)] for node in pairs], dtype=int)
         origin = np.array([node.position for node in nodes]).reshape(-1, 3)
         axis = np.array([node.axis for node in nodes]).reshape(-1, 3)
         low, high = np.full(len(nodes), np.inf), np.full(len(nodes), -np.inf)
         profile = design.profile
-        for index, entries in reach.items():
+        for index, (pair, station) in rows_by_lamella(pairs).items():
             strip = made.strips.lamellas[index]
-            rows = np.repeat([n for n, _ in entries], 6)
-            station = np.array([s for _, s in entries])
+            rows = np.repeat(owner[pair], 6)
             s = np.repeat(station[:, None] + self.washer.arm * np.array([-1.0, 0.0, 1.0]), 2, 1)
-            y = np.tile([-profile.thickness / 2.0, profile.thickness / 2.0], 3 * len(entries))
+            y = np.tile([-profile.thickness / 2.0, profile.thickness / 2.0], 3 * len(pair))
             for way, most in ((1.0, high), (-1.0, low)):
                 z = np.full(s.size, way * profile.width / 2.0)
                 points = strip.place(s.ravel(), y, z)
@@ -188,7 +177,7 @@ class DoubleSlotJoint(Joint):
         shapes: dict[int, int] = {}
         made: list[Shape] = []
         bodies = []
-        washer, hole = self.washer, self.bolt + _HOLE_PLAY
+        washer, hole = self.washer, self.bolt + HOLE_PLAY
         for node, frame, bottom, top in zip(nodes, frames, low, high, strict=True):
             key = round(float(node.angle or 0.0) / _ALIKE)
             if key not in shapes:
@@ -217,13 +206,13 @@ class DoubleSlotJoint(Joint):
                 used[number],
                 material=self.washer.material.name,
                 mass=shape.volume * self.washer.material.density * 1e-9,
-                note=f"hole {self.bolt + _HOLE_PLAY:g} mm; one above, one below every node",
+                note=f"hole {self.bolt + HOLE_PLAY:g} mm; one above, one below every node",
             )
 
     # ---- findings ------------------------------------------------------------------------------
 
     def _findings(self, design: Structure, nodes: Sequence[Node]) -> Iterator[Finding]:
-        void, hole = self.spacing - design.profile.thickness, self.bolt + _HOLE_PLAY
+        void, hole = self.spacing - design.profile.thickness, self.bolt + HOLE_PLAY
         if hole > void:
             yield Finding(
                 "bolt-void",
@@ -232,9 +221,9 @@ class DoubleSlotJoint(Joint):
                 hole,
                 void,
                 "mm",
-                f"A bolt of {self.bolt:g} mm and {_HOLE_PLAY:g} mm of play need {hole:g} mm; the "
+                f"A bolt of {self.bolt:g} mm and {HOLE_PLAY:g} mm of play need {hole:g} mm; the "
                 f"void between the strips is {void:g} mm wide. Use a bolt of at most "
-                f"{max(void - _HOLE_PLAY, 0.0):g} mm or a spacing of "
+                f"{max(void - HOLE_PLAY, 0.0):g} mm or a spacing of "
                 f"{hole + design.profile.thickness:g} mm.",
             )
         if self.washer.arm > void:
@@ -248,7 +237,7 @@ class DoubleSlotJoint(Joint):
                 f"The arms of the star washers are {self.washer.arm:g} mm wide, the void between "
                 f"the strips {void:g} mm: the washer closes it. Use arms of at most {void:g} mm.",
             )
-        distance, needed = self.washer.arm / np.sqrt(2.0), _EDGE_DISTANCE * hole
+        distance, needed = self.washer.arm / np.sqrt(2.0), EDGE_DISTANCE * hole
         if distance < needed:
             yield Finding(
                 "washer-edge",

@@ -22,7 +22,8 @@ import numpy as np
 from fabrication.cut import Cuts, Edge, Slot
 from fabrication.finding import Finding, Severity
 from fabrication.jointed import Feature, Fixture
-from fabrication.node import Node
+from fabrication.joints.node_frames import node_tangents, node_twists
+from fabrication.node import Node, rows_by_lamella
 from fabrication.stock import require_web
 from fabrication.structures import Structure
 from gridshell.arrays import Floats
@@ -87,7 +88,7 @@ def slot_findings(strips: Structure) -> tuple[Finding, ...]:
     """Nodes without a joint, and angles too sharp to slot."""
     found = []
     for node in strips.nodes:
-        if len(node.crossings) > 2:
+        if node.singular:
             found.append(
                 Finding(
                     code="singular-node",
@@ -118,7 +119,7 @@ def slot_findings(strips: Structure) -> tuple[Finding, ...]:
 
 def slot_widths(strips: Structure, nodes: Sequence[Node], lap: HalfLap) -> Floats:
     """(n, 2) drawn widths of the slots in family 1 and in family 2 at regular *nodes*, mm."""
-    tangents, twists = at_nodes(strips, nodes)
+    tangents, twists = node_tangents(strips, nodes), node_twists(strips, nodes)
     axes = np.array([node.axis for node in nodes]).reshape(-1, 3)
     across = np.einsum("nc,nc->n", np.cross(tangents[:, 0], tangents[:, 1]), axes)
     angle = np.arctan2(across, np.einsum("nc,nc->n", tangents[:, 0], tangents[:, 1]))
@@ -155,11 +156,9 @@ def _astray(strips: Structure, nodes: Sequence[Node], tangents: Floats) -> Float
     """
     heights = strips.profile.width * np.array([-0.5, 0.0, 0.5])
     lines = np.zeros((len(nodes), 2, 3, 3))
-    for number, entries in _rows(nodes).items():
+    for number, (here, stations) in rows_by_lamella(nodes).items():
         lamella = strips.lamellas[number]
-        here = np.array([row for row, _ in entries])
-        s = np.repeat([station for _, station in entries], 3)
-        z = np.tile(heights, len(entries))
+        s, z = np.repeat(stations, 3), np.tile(heights, len(here))
         lines[here, lamella.family - 1] = lamella.place(s, np.zeros_like(s), z).reshape(-1, 3, 3)
     apart = np.einsum("nzc,nfc->nfz", lines[:, 0] - lines[:, 1], tangents)
     return np.asarray(2.0 * np.abs(apart).max(axis=2, initial=0.0))
@@ -189,24 +188,3 @@ def slot_width(
     partner_part = partner_thickness * np.cos(d1) * np.cos(d2)
     own_part = own_thickness * np.abs(np.cos(angle + d2)) * np.cos(d1)
     return np.asarray((partner_part + own_part) / np.abs(np.sin(angle - d1 + d2)))
-
-
-def at_nodes(structure: Structure, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
-    """(n, 2, 3) tangents and (n, 2) rates of twist of both families at regular *nodes*."""
-    tangents, twists = np.zeros((len(nodes), 2, 3)), np.zeros((len(nodes), 2))
-    for number, entries in _rows(nodes).items():
-        lamella = structure.lamellas[number]
-        here = np.array([row for row, _ in entries])
-        stations = np.array([station for _, station in entries])
-        tangents[here, lamella.family - 1] = lamella.axis.tangents(stations)
-        twists[here, lamella.family - 1] = lamella.twist(stations)
-    return tangents, twists
-
-
-def _rows(nodes: Sequence[Node]) -> dict[int, list[tuple[int, float]]]:
-    """By strip the number of every node on it, with its station there."""
-    rows: dict[int, list[tuple[int, float]]] = {}
-    for row, node in enumerate(nodes):
-        for crossing in node.crossings:
-            rows.setdefault(crossing.lamella, []).append((row, crossing.station))
-    return rows

@@ -1,4 +1,4 @@
-"""Directions at the nodes of a design: tangents of both families, frames along the node axes."""
+"""Directions at nodes: tangents and twists of both families, frames along the node axes."""
 
 from __future__ import annotations
 
@@ -6,25 +6,28 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fabrication.node import Node
+from fabrication.node import Node, rows_by_lamella
 from fabrication.outlines import Frame
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, unit
 
 
-def node_tangents(design: Structure, nodes: Sequence[Node]) -> Floats:
-    """(n, 2, 3) unit tangents of both families at regular *nodes*."""
+def node_tangents(strips: Structure, nodes: Sequence[Node]) -> Floats:
+    """(n, 2, 3) unit tangents of both families at regular *nodes* of *strips*."""
     tangents = np.zeros((len(nodes), 2, 3))
-    rows: dict[int, list[tuple[int, float]]] = {}
-    for row, node in enumerate(nodes):
-        for crossing in node.crossings:
-            rows.setdefault(crossing.lamella, []).append((row, crossing.station))
-    for number, entries in rows.items():
-        lamella = design.lamellas[number]
-        here = np.array([row for row, _ in entries])
-        stations = np.array([station for _, station in entries])
+    for number, (here, stations) in rows_by_lamella(nodes).items():
+        lamella = strips.lamellas[number]
         tangents[here, lamella.family - 1] = lamella.axis.tangents(stations)
     return tangents
+
+
+def node_twists(strips: Structure, nodes: Sequence[Node]) -> Floats:
+    """(n, 2) rates of twist of both families at regular *nodes* of *strips*, rad/mm."""
+    twists = np.zeros((len(nodes), 2))
+    for number, (here, stations) in rows_by_lamella(nodes).items():
+        lamella = strips.lamellas[number]
+        twists[here, lamella.family - 1] = lamella.twist(stations)
+    return twists
 
 
 def bisector_frames(nodes: Sequence[Node], tangents: Floats) -> list[Frame]:

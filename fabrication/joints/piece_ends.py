@@ -19,13 +19,13 @@ from itertools import pairwise
 import numpy as np
 
 from fabrication.jointed import Feature, Fixture
-from fabrication.joints.half_lap import at_nodes
+from fabrication.joints.node_frames import node_tangents, node_twists
 from fabrication.lamella import Lamella, station_of
 from fabrication.node import Node
 from fabrication.structures import Structure
 from gridshell import SettingError
 from gridshell.arrays import Floats, Indices, Mask, unit
-from gridshell.mesh.parity import alternating_labels
+from gridshell.mesh import alternating_labels
 
 _HEIGHTS = 17
 
@@ -101,7 +101,7 @@ def piece_ends(design: Structure, made: Sequence[Span], *, square: bool) -> Ends
     ]
     span, side, node, family = np.array(rows, dtype=np.int64).reshape(-1, 4).T
     nodes: list[Node] = [design.nodes[i] for i in node.tolist()]
-    tangents, twists = at_nodes(design, nodes)
+    tangents, twists = node_tangents(design, nodes), node_twists(design, nodes)
     row, own = np.arange(len(node)), family - 1
     mine, through = tangents[row, own], tangents[row, 1 - own]
     axes = np.array([one.axis for one in nodes]).reshape(-1, 3)

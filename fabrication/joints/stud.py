@@ -19,13 +19,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fabrication.arrangement import LEFT, RIGHT, Arrangement, Lane, arranged
-from fabrication.bolts import bolt_bodies, bolt_length
+from fabrication.bolts import HOLE_PLAY, bolt_bodies, bolt_length
 from fabrication.cut import Cuts, Hole
 from fabrication.jointed import BillLine, Feature, Fixture, Jointed
 from fabrication.joints.joint import Joint
 from fabrication.joints.node_frames import bisector_frames, node_tangents
 from fabrication.joints.stud_findings import stud_findings
-from fabrication.node import Node
+from fabrication.node import Node, rows_by_lamella
 from fabrication.outlines import Frame
 from fabrication.rooms import room_beside
 from fabrication.shapes import Body, Prisms, Shape
@@ -33,10 +33,9 @@ from fabrication.shear_blocks import Blocks, ShearBlock, made_grip, shear_blocks
 from fabrication.stock import Material, require_distance, require_positive
 from fabrication.structures import Structure
 from gridshell import SettingError
-from gridshell.arrays import Floats
+from gridshell.arrays import Floats, Indices
 
 _COLOUR = (0.72, 0.56, 0.36)
-_HOLE_PLAY = 1.0
 _ANGLE_STEP = np.radians(0.5)
 
 
@@ -144,7 +143,7 @@ class StudJoint(Joint):
             room=rooms.min(axis=1, initial=np.inf),
             level=level,
             length=length,
-            hole=self.bolt + _HOLE_PLAY if self.bolt else 0.0,
+            hole=self.bolt + HOLE_PLAY if self.bolt else 0.0,
             spacing=self.spacing,
             fit=self.stud.fit,
         )
@@ -197,7 +196,7 @@ class StudJoint(Joint):
         position = np.array([node.position for node in nodes]).reshape(-1, 3)
         axis = np.array([node.axis for node in nodes]).reshape(-1, 3)
         rooms = np.full((len(nodes), 2), np.inf)
-        for index, rows, stations in _passing(made, nodes):
+        for index, rows, stations in _passing(design, made):
             strip, lane = made.strips.lamellas[index], made.lanes[index]
             side = np.sign(lane.across)
             across = side * np.cross(axis[rows], tangents[rows, strip.family - 1])
@@ -277,13 +276,13 @@ class StudJoint(Joint):
         if self.bolt == 0.0:
             return holes, fixtures
         y = design.profile.width / 2.0
-        for index, rows, stations in _passing(made, nodes):
+        for index, rows, stations in _passing(design, made):
             strip, lane = made.strips.lamellas[index], made.lanes[index]
             for row, station in zip(rows.tolist(), stations.tolist(), strict=True):
                 node, x = nodes[row], station - strip.start
                 across = np.cross(node.axis, tangents[row, strip.family - 1])
                 position = node.position + lane.along * node.axis + lane.across * across
-                diameter, purpose = self.bolt + _HOLE_PLAY, f"bolt M{self.bolt:g}"
+                diameter, purpose = self.bolt + HOLE_PLAY, f"bolt M{self.bolt:g}"
                 holes[strip.mark].append(Hole(x, y, diameter, node.name, purpose))
                 fixtures.append(Fixture(strip.mark, node.name, Feature.HOLE, x, y, position))
         return holes, fixtures
@@ -329,7 +328,7 @@ class StudJoint(Joint):
     def _bill(self, studs: Prisms, length: float) -> Iterator[BillLine]:
         used = Counter(body.shape for body in studs.bodies)
         kind = f"pipe, wall {self.stud.wall:g} mm" if self.stud.wall else "solid"
-        drilled = f"; drilled {self.bolt + _HOLE_PLAY:g} mm at both levels" if self.bolt else ""
+        drilled = f"; drilled {self.bolt + HOLE_PLAY:g} mm at both levels" if self.bolt else ""
         for number, shape in enumerate(studs.shapes):
             (x, _), (_, y) = np.abs(shape.outline[[0, 1], :2])
             size, angle = 2.0 * x * y / np.hypot(x, y), 2.0 * np.degrees(np.arctan2(y, x))
@@ -354,15 +353,9 @@ def _leaning(angle: Floats, turned: Floats) -> Floats:
     return np.asarray(np.abs(turned - angle) * (1.0 + np.abs(np.cos(angle))) / np.sin(angle))
 
 
-def _passing(made: Arrangement, nodes: Sequence[Node]) -> Iterator[tuple[int, Floats, Floats]]:
-    """Every strip with the numbers of the *nodes* it passes, and its stations there."""
-    names = {node.name: row for row, node in enumerate(nodes)}
-    found: dict[int, list[tuple[int, float]]] = {}
-    for node in made.strips.nodes:
-        if node.name in names:
-            for crossing in node.crossings:
-                entry = names[node.name], crossing.station
-                found.setdefault(crossing.lamella, []).append(entry)
-    for index, entries in sorted(found.items()):
-        rows = np.array([row for row, _ in entries])
-        yield index, rows, np.array([station for _, station in entries])
+def _passing(design: Structure, made: Arrangement) -> Iterator[tuple[int, Indices, Floats]]:
+    """Every strip with the numbers of the regular nodes it passes, and its stations there."""
+    both = zip(made.strips.nodes, design.nodes, strict=True)
+    kept = [node for node, before in both if before.regular]
+    for index, (rows, stations) in sorted(rows_by_lamella(kept).items()):
+        yield index, rows, stations

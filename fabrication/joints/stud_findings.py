@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from fabrication.arrangement import Arrangement
+from fabrication.bolts import EDGE_DISTANCE
 from fabrication.finding import Finding, Severity
 from fabrication.node import Node
 from fabrication.structures import Structure
 from gridshell.arrays import Floats
 
-_EDGE_DISTANCE = 1.2
 _SAMPLES_PER_BAY = 8
 
 
@@ -54,16 +54,16 @@ def stud_findings(
     )
     yield from _room(nodes, need, room - 2.0 * fit, spacing)
     yield from _length(2.0 * level + design.profile.width, level, length)
-    if hole and design.profile.width / 2.0 < _EDGE_DISTANCE * hole:
+    if hole and design.profile.width / 2.0 < EDGE_DISTANCE * hole:
         yield Finding(
             "bolt-edge",
             Severity.ERROR,
             "all nodes",
             design.profile.width / 2.0,
-            _EDGE_DISTANCE * hole,
+            EDGE_DISTANCE * hole,
             "mm",
             f"The holes of {hole:g} mm lie {design.profile.width / 2.0:g} mm from the edges of "
-            f"the strips, {_EDGE_DISTANCE * hole:.1f} mm are needed. Use a smaller bolt.",
+            f"the strips, {EDGE_DISTANCE * hole:.1f} mm are needed. Use a smaller bolt.",
         )
     yield _bend(design, made, level)
 

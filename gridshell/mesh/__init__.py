@@ -11,6 +11,7 @@ from gridshell.mesh.control_mesh import (
 from gridshell.mesh.diagonals import DiagonalMesh, diagonal_meshes
 from gridshell.mesh.grid import grid_quads
 from gridshell.mesh.panel_mesh import PanelMesh, averaged_normals, panel_mesh
+from gridshell.mesh.parity import alternating_labels
 from gridshell.mesh.pieces import main_piece
 from gridshell.mesh.polylines import Polyline, polylines
 from gridshell.mesh.quad_mesh import QuadMesh, oriented, position
@@ -26,6 +27,7 @@ __all__ = [
     "QuadMesh",
     "Skin",
     "Stars",
+    "alternating_labels",
     "as_control_mesh",
     "averaged_normals",
     "checkerboard",

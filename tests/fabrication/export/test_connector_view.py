@@ -3,7 +3,8 @@ import pytest
 import trimesh
 
 import fabrication as fab
-from fabrication.export.connector_view import connector_traces, flattened, shape_mesh
+from fabrication.export.connector_view import connector_traces, shape_mesh
+from fabrication.flattening import corners
 from fabrication.joints.double_slot import StarWasher
 from fabrication.outlines import Frame
 from fabrication.shapes import Body, Prisms, Shape, circle
@@ -37,7 +38,7 @@ def test_a_shape_is_a_closed_body_of_nearly_its_volume(shape):
 
 @pytest.mark.parametrize("bulge", [1.0, -1.0, 0.3, -2.0])
 def test_arcs_are_cut_into_chords_on_their_circle(bulge):
-    ring = flattened(np.array([[0.0, 0.0, bulge], [10.0, 0.0, 0.0], [5.0, 30.0, 0.0]]))
+    ring = corners(np.array([[0.0, 0.0, bulge], [10.0, 0.0, 0.0], [5.0, 30.0, 0.0]]))
     on_arc = ring[: -2 + 1]
     assert len(on_arc) > 2
     radius = 10.0 * (1.0 + bulge**2) / (4.0 * abs(bulge))
