@@ -2,8 +2,7 @@
 
 Around everything that meets (slots, cut ends, connectors) every strip is taken as it is cut, bent
 and twisted into place, and intersected with its neighbours. The pieces are meshed independently of
-the CAD solids: a block of cells over the flat outline, with the slots' cells left out, is moved
-through the strip's own map. The map is straight along the height, so only the length needs slices.
+the CAD solids, see ``strip_pieces``.
 
 Strips that meet away from their slots are found by ``collisions``.
 """
@@ -12,34 +11,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import manifold3d
 import numpy as np
 
 from fabrication.collisions import slot_reach
-from fabrication.cut import Edge
 from fabrication.flattening import corners
-from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
 from fabrication.shapes import Prisms, Shape
+from fabrication.strip_pieces import Window, strip_pieces
 from fabrication.structures import Structure
-from gridshell.arrays import Floats, Indices, Mask, Points
-
-_STEP = 3.0
-"""Length of a cell at most, mm."""
-
-_SLICES = 4
-"""Cells beside a slot on either side, and in the slot."""
+from gridshell.arrays import Floats, Indices, Points
 
 _SAMPLE = 20.0
 """Between the points that tell which strips are near a connector or a cut end, mm."""
 
 _LONGEST = 250.0
 """Length of a piece that is taken at once, mm, more or less."""
-
-_ROUND = 64
-"""Straight sides of a drill."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +70,10 @@ def clash_volumes(
     bodies = [solid for kind in connectors for solid in _solids(kind)]
     pieces: list[_Solid] = []
     for index, windows in enumerate(_windows(strips, parts, bodies)):
-        pieces += _pieces(index, strips.lamellas[index], parts[index], windows)
+        pieces += [
+            _boxed(piece.solid, index, nodes=piece.nodes)
+            for piece in strip_pieces(strips.lamellas[index], parts[index], windows)
+        ]
     first, second, middle = _near(pieces, bodies)
     name = _nearest_nodes(strips, middle)
     clashes: dict[str, float] = {}
@@ -120,12 +111,14 @@ class _Solid:
 def _boxed(
     solid: manifold3d.Manifold,
     strip: int,
-    core: Points,
+    *,
+    core: Points | None = None,
     radius: float = 0.0,
     nodes: frozenset[str] = frozenset(),
 ) -> _Solid:
     box = np.array(solid.bounding_box())
-    return _Solid(solid, strip, box[:3], box[3:], core, radius, nodes)
+    points = box[None, :3] if core is None else core
+    return _Solid(solid, strip, box[:3], box[3:], points, radius, nodes)
 
 
 def _near(pieces: Sequence[_Solid], bodies: Sequence[_Solid]) -> tuple[Indices, Indices, Points]:
@@ -177,7 +170,7 @@ def _solids(kind: Prisms) -> Iterator[_Solid]:
         middle = shape.outline[:, :2].mean(axis=0)
         radius = float(np.linalg.norm(shape.outline[:, :2] - middle, axis=1).max())
         core = frame.place(np.tile(middle, (count, 1))) + z[:, None] * frame.normal
-        yield _boxed(made[body.shape].transform(motion), -1, core, radius)
+        yield _boxed(made[body.shape].transform(motion), -1, core=core, radius=radius)
 
 
 def _extruded(shape: Shape) -> manifold3d.Manifold:
@@ -188,15 +181,12 @@ def _extruded(shape: Shape) -> manifold3d.Manifold:
 
 # ---- pieces of strips --------------------------------------------------------------------------
 
-_Window = tuple[float, float]
-"""From and to, mm from the strip's cut end."""
-
 
 def _windows(
     strips: Structure, parts: Sequence[FlatPart], bodies: Sequence[_Solid]
-) -> list[list[_Window]]:
+) -> list[list[Window]]:
     """Where every strip may meet something: around slots, near cut ends and near connectors."""
-    found: list[list[_Window]] = [[] for _ in parts]
+    found: list[list[Window]] = [[] for _ in parts]
     for own, part in zip(found, parts, strict=True):
         for slot in part.slots:
             reach = slot.width / 2.0 + slot_reach(slot, part.thickness)
@@ -259,9 +249,9 @@ def _ends(strips: Structure, parts: Sequence[FlatPart]) -> Points:
     return np.concatenate(points)
 
 
-def _merged(windows: Sequence[_Window], length: float) -> list[_Window]:
+def _merged(windows: Sequence[Window], length: float) -> list[Window]:
     """Windows clipped to the strip; those that overlap are one."""
-    merged: list[_Window] = []
+    merged: list[Window] = []
     for low, high in sorted((max(a, 0.0), min(b, length)) for a, b in windows):
         if merged and low <= merged[-1][1]:
             merged[-1] = (merged[-1][0], max(merged[-1][1], high))
@@ -270,7 +260,7 @@ def _merged(windows: Sequence[_Window], length: float) -> list[_Window]:
     return merged
 
 
-def _divided(windows: Sequence[_Window], part: FlatPart) -> list[_Window]:
+def _divided(windows: Sequence[Window], part: FlatPart) -> list[Window]:
     """Windows of moderate length; none ends within a slot or a hole."""
     closed = [(slot.x - slot.width, slot.x + slot.width) for slot in part.slots]
     closed += [(hole.x - hole.diameter, hole.x + hole.diameter) for hole in part.holes]
@@ -288,130 +278,3 @@ def _divided(windows: Sequence[_Window], part: FlatPart) -> list[_Window]:
         if high > start:
             divided.append((start, high))
     return divided
-
-
-def _pieces(
-    index: int, lamella: Lamella, part: FlatPart, windows: Sequence[_Window]
-) -> Iterator[_Solid]:
-    """The built strip within each window, bent, twisted, slotted and drilled."""
-    lattices = [_Lattice.of(part, window) for window in windows]
-    if not lattices:
-        return
-    flat = np.concatenate([lattice.points for lattice in lattices])
-    x, y, up = flat.T
-    placed = lamella.place(x + lamella.start, y, up - part.width / 2.0)
-    ends = np.cumsum([len(lattice.points) for lattice in lattices])[:-1]
-    for lattice, points in zip(lattices, np.split(placed, ends), strict=True):
-        solid = manifold3d.Manifold(
-            manifold3d.Mesh64(
-                vert_properties=np.ascontiguousarray(points),
-                tri_verts=lattice.triangles.astype(np.uint64),
-            )
-        )
-        drills = [
-            _drill(lamella, part, hole.x, hole.y, hole.diameter)
-            for hole in part.holes
-            if lattice.low < hole.x < lattice.high
-        ]
-        if drills:
-            solid = manifold3d.Manifold.batch_boolean([solid, *drills], manifold3d.OpType.Subtract)
-        nodes = frozenset(s.node for s in part.slots if lattice.low < s.x < lattice.high)
-        yield _boxed(solid, index, points[:1], nodes=nodes)
-
-
-def _drill(
-    lamella: Lamella, part: FlatPart, x: float, y: float, diameter: float
-) -> manifold3d.Manifold:
-    """A cylinder through the strip where its hole lies."""
-    s = np.array([x + lamella.start])
-    frame = lamella.frames(s)
-    middle = lamella.place(s, np.zeros(1), np.array([y - part.width / 2.0]))[0]
-    motion = np.column_stack([frame.n[0], frame.t[0], frame.b[0], middle])
-    tool = manifold3d.Manifold.cylinder(
-        3.0 * part.thickness, diameter / 2.0, circular_segments=_ROUND, center=True
-    )
-    return tool.transform(motion)
-
-
-@dataclass(frozen=True, eq=False)
-class _Lattice:
-    """Cells over a window of a flat strip.
-
-    Parameters
-    ----------
-    points : (n, 3) corners of the cells: x, y through the thickness, height from the lower edge.
-    triangles : (m, 3) the closed surface of the cells that are there, turned outwards.
-    low, high : the window, mm.
-    """
-
-    points: Floats
-    triangles: Indices
-    low: float
-    high: float
-
-    @classmethod
-    def of(cls, part: FlatPart, window: _Window) -> _Lattice:
-        """Columns end at slot walls and are 3 mm long at most; rows end at slot floors."""
-        low, high = window
-        slots = [s for s in part.slots if low < s.x < high]
-        walls = [w for s in slots for w in (s.x - s.width / 2.0, s.x + s.width / 2.0)]
-        stops = np.unique(np.clip(np.r_[low, walls, high], low, high))
-        x = np.concatenate(
-            [np.linspace(a, b, _cells(b - a, thin=True) + 1)[:-1] for a, b in pairwise(stops)]
-            + [[high]]
-        )
-        floors = [part.width - s.depth if s.edge is Edge.UPPER else s.depth for s in slots]
-        z = np.unique(np.r_[0.0, floors, part.width])
-        column, row = (x[:-1] + x[1:]) / 2.0, (z[:-1] + z[1:]) / 2.0
-        present = np.ones((len(column), len(row)), dtype=bool)
-        for slot, floor in zip(slots, floors, strict=True):
-            inside = np.abs(column - slot.x) < slot.width / 2.0
-            open_rows = row > floor if slot.edge is Edge.UPPER else row < floor
-            present &= ~(inside[:, None] & open_rows)
-        through = np.array([-part.thickness / 2.0, part.thickness / 2.0])
-        grid = np.stack(np.meshgrid(x, through, z, indexing="ij"), axis=-1)
-        _bevel(grid, part)
-        return cls(grid.reshape(-1, 3), _surface(present), low, high)
-
-
-def _cells(length: float, *, thin: bool) -> int:
-    least = _SLICES if thin and length < _SLICES * _STEP else 1
-    return max(least, int(np.ceil(length / _STEP)))
-
-
-def _bevel(grid: Floats, part: FlatPart) -> None:
-    """Move the columns near a bevelled end so that its near and far face end where they do."""
-    for run, end in zip(part.bevels, (0.0, part.length), strict=True):
-        if run == 0.0 or not np.isclose(grid[:, 0, 0, 0], end).any():
-            continue
-        for side, sign in ((1, 1.0), (0, -1.0)):
-            shorter = max(0.0, -sign * run)
-            x = grid[:, side, :, 0]
-            reach = 4.0 * abs(run)
-            near = np.clip(1.0 - np.abs(x - end) / reach, 0.0, 1.0)
-            x += np.where(end == 0.0, 1.0, -1.0) * shorter * near
-
-
-def _surface(present: Mask) -> Indices:
-    """Closed surface of the cells of a lattice one cell thick, turned outwards."""
-    columns, rows = present.shape
-    number = np.arange((columns + 1) * 2 * (rows + 1)).reshape(columns + 1, 2, rows + 1)
-    cell = np.pad(present[:, None, :], 1)
-    inside = cell[1:-1, 1:-1, 1:-1]
-    quads = []
-    for axis in range(3):
-        for side in (0, 1):
-            beside = np.roll(cell, 1 - 2 * side, axis=axis)[1:-1, 1:-1, 1:-1]
-            corner = np.argwhere(inside & ~beside)
-            corner[:, axis] += side
-            b, c = (axis + 1) % 3, (axis + 2) % 3
-            ring = [(0, 0), (1, 0), (1, 1), (0, 1)] if side else [(0, 0), (0, 1), (1, 1), (1, 0)]
-            found = []
-            for at_b, at_c in ring:
-                point = corner.copy()
-                point[:, b] += at_b
-                point[:, c] += at_c
-                found.append(number[tuple(point.T)])
-            quads.append(np.stack(found, axis=1))
-    faces = np.concatenate(quads)
-    return np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])

@@ -16,18 +16,27 @@ from typing import Any
 
 import numpy as np
 
+from fabrication.brep_geometry import (
+    SQUARE,
+    TOLERANCE,
+    bevel_sag,
+    bilinear,
+    knots,
+    ruled_surface,
+    side_surface,
+    wall_planes,
+)
 from fabrication.errors import KernelError
 from fabrication.sides import Side
 from fabrication.strip_loops import DEGREE, Loop, Piece, Run, arc_images
-from gridshell.arrays import Floats, unit
+from gridshell.arrays import Floats
 
 try:
     from OCP.BRep import BRep_Builder
-    from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface, Geom_Line, Geom_Plane
+    from OCP.Geom import Geom_BSplineCurve, Geom_Line
     from OCP.Geom2d import Geom2d_Circle, Geom2d_Line
     from OCP.gp import gp_Ax22d, gp_Circ2d, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
-    from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
-    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+    from OCP.TColgp import TColgp_Array1OfPnt
     from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
     from OCP.TopLoc import TopLoc_Location
     from OCP.TopoDS import (
@@ -46,10 +55,6 @@ except ImportError as error:  # pragma: no cover - depends on the machine
         advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
     ) from error
 
-_TOLERANCE = 1e-6
-_SQUARE = 1e-9
-"""Corners whose x agrees this well on both sides are not bevelled, mm."""
-
 
 def strip_brep(sides: tuple[Side, Side], thickness: float, loops: Sequence[Loop]) -> TopoDS_Solid:
     """The solid between *sides* within *loops*, the outline first."""
@@ -62,7 +67,7 @@ class _Builder:
     def __init__(self, sides: tuple[Side, Side], thickness: float, loops: Sequence[Loop]) -> None:
         self.thickness, self.loops = thickness, loops
         self.tool = BRep_Builder()
-        self.surfaces = [_side_surface(side) for side in sides]
+        self.surfaces = [side_surface(side) for side in sides]
         self.corners = [
             [
                 side.points(rows[:, 0], rows[:, 1])
@@ -76,9 +81,9 @@ class _Builder:
         self.curves: dict[tuple[int, int], Geom_BSplineCurve] = {}
         shares, counts = np.unique(self.images.knots if self.images else [], return_counts=True)
         self.shares, self.counts = shares.tolist(), counts.tolist()
-        self.planes, planar = _wall_planes(loops, self.corners, thickness)
-        astray = max(_bevel_sag(sides, loops[0]), self.images.off if self.images else 0.0)
-        self.tolerance = max(_TOLERANCE, planar, 2.0 * astray)
+        self.planes, planar = wall_planes(loops, self.corners, thickness)
+        astray = max(bevel_sag(sides, loops[0]), self.images.off if self.images else 0.0)
+        self.tolerance = max(TOLERANCE, planar, 2.0 * astray)
 
     def solid(self) -> TopoDS_Solid:
         """Sides first, then the walls in the order of the loops."""
@@ -140,13 +145,13 @@ class _Builder:
         )
         rows = self.loops[number].rows
         run = float(rows[1, i, 0] - rows[0, i, 0])
-        if abs(run) < _SQUARE:
+        if abs(run) < SQUARE:
             return self._straight(a, b, first, last)
         length = float(np.hypot(self.thickness, run))
         poles = TColgp_Array1OfPnt(1, 2)
         poles.SetValue(1, gp_Pnt(*a.tolist()))
         poles.SetValue(2, gp_Pnt(*b.tolist()))
-        line = Geom_BSplineCurve(poles, *_knots((0.0, length), (2, 2)), 1)
+        line = Geom_BSplineCurve(poles, *knots((0.0, length), (2, 2)), 1)
         return self._edge(line, first, last, 0.0, length)
 
     def _rim(
@@ -185,7 +190,7 @@ class _Builder:
                 array.SetValue(i, gp_Pnt(x, y, z))
             low, high = piece.low[0], piece.high[0]
             values = [low + (high - low) * share for share in self.shares]
-            self.curves[key] = Geom_BSplineCurve(array, *_knots(values, self.counts), DEGREE)
+            self.curves[key] = Geom_BSplineCurve(array, *knots(values, self.counts), DEGREE)
         return self.curves[key]
 
     def _trace(
@@ -219,16 +224,16 @@ class _Builder:
             height = piece.high[0] - piece.low[0]
             square = [[side[j] for j in (piece.first, piece.last)] for side in corners]
             depth = float(np.hypot(depth, piece.at[1] - piece.at[0]))
-            surface = _bilinear(square, height, depth)
+            surface = bilinear(square, height, depth)
             starts, ends = (0.0, 0.0), (height, height)
         elif piece.run is Run.ALONG:
             curves = [side.VIso(piece.at[0]) for side in self.surfaces]
             for curve in curves:
                 curve.Segment(min(piece.low), max(piece.high))
-            surface = _ruled_surface(curves[0], curves[1], depth)
+            surface = ruled_surface(curves[0], curves[1], depth)
         else:
             curves = [self._arc_curve(piece, k) for k in (0, 1)]
-            surface = _ruled_surface(curves[0], curves[1], depth)
+            surface = ruled_surface(curves[0], curves[1], depth)
         self._trace(near, surface, (0.0, 0.0), (1.0, 0.0))
         self._trace(far, surface, (0.0, depth), (1.0, 0.0))
         for edge, place in ((low, starts), (high, ends)):
@@ -246,7 +251,7 @@ class _Builder:
     def _face(self, surface: Any, wires: Sequence[TopoDS_Wire], *, forward: bool) -> TopoDS_Face:
         """Side 0 (+t/2) faces along b against its natural normal, side 1 with it."""
         face = TopoDS_Face()
-        self.tool.MakeFace(face, surface, _TOLERANCE)
+        self.tool.MakeFace(face, surface, TOLERANCE)
         for wire in wires:
             self.tool.Add(face, wire)
         return face if forward else TopoDS.Face_s(face.Reversed())
@@ -260,119 +265,3 @@ class _Builder:
         self.tool.MakeSolid(solid)
         self.tool.Add(solid, shell)
         return solid
-
-
-# ---- geometry in the kernel's types -------------------------------------------------------------
-
-
-def _wall_planes(
-    loops: Sequence[Loop], corners: Sequence[Sequence[Floats]], thickness: float
-) -> tuple[dict[tuple[int, int], Geom_Plane], float]:
-    """Planes of the square walls across the strip by loop and piece, and the tolerance they need.
-
-    A normal belongs to the natural direction of its piece. The tolerance covers what walls are out
-    of plane and straight edges off their length; both come from interpolating the corner curves
-    and stay around 1e-6 mm on smooth strips.
-    """
-    walls, quads, heights, bevels = [], [], [], []
-    for number, loop in enumerate(loops):
-        near, far = corners[number]
-        for i, piece in enumerate(loop.pieces):
-            if piece.run is not Run.ACROSS:
-                continue
-            a, b = piece.first, piece.last
-            square = abs(piece.at[0] - piece.at[1]) < _SQUARE
-            heights.append(piece.high[0] - piece.low[0])
-            quads.append([near[a], near[b], far[b], far[a]])
-            bevels.append(not square)
-            walls.append((number, i))
-    points = np.array(quads)
-    middle = points.mean(axis=1)
-    normal = unit(np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1]))
-    offset = np.abs(np.einsum("mkc,mc->mk", points - middle[:, None], normal)).max(axis=1)
-    offset = np.where(bevels, 0.0, offset)
-    up = np.linalg.norm(points[:, [1, 2]] - points[:, [0, 3]], axis=2)
-    through = np.linalg.norm(points[:, [0, 1]] - points[:, [3, 2]], axis=2)
-    astray = np.where(np.array(bevels)[:, None], 0.0, np.abs(through - thickness))
-    tolerance = 2.0 * max(
-        float(offset.max()),
-        float(np.abs(up - np.array(heights)[:, None]).max()),
-        float(astray.max()),
-    )
-    planes = {
-        place: Geom_Plane(gp_Pnt(*point), gp_Dir(*direction))
-        for place, bevelled, point, direction in zip(
-            walls, bevels, middle.tolist(), normal.tolist(), strict=True
-        )
-        if not bevelled
-    }
-    return planes, tolerance
-
-
-def _bevel_sag(sides: Sequence[Side], outline: Loop) -> float:
-    """How far edges through the thickness at bevelled ends are from the walls beside them, mm."""
-    near, far = outline.rows
-    lean = np.abs(near[:, 0] - far[:, 0]) >= _SQUARE
-    if not lean.any():
-        return 0.0
-    x = (near[lean, 0] + far[lean, 0]) / 2.0
-    y = near[lean, 1]
-    wall = (sides[0].points(x, y) + sides[1].points(x, y)) / 2.0
-    ends = [side.points(rows[lean, 0], y) for side, rows in zip(sides, (near, far), strict=True)]
-    return float(np.linalg.norm(wall - (ends[0] + ends[1]) / 2.0, axis=1).max())
-
-
-def _multiplicities(
-    knots: Floats,
-) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
-    values, counts = np.unique(knots, return_counts=True)
-    return _knots(values.tolist(), counts.tolist())
-
-
-def _knots(
-    values: Sequence[float], counts: Sequence[int]
-) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
-    reals = TColStd_Array1OfReal(1, len(values))
-    integers = TColStd_Array1OfInteger(1, len(values))
-    for i, (value, count) in enumerate(zip(values, counts, strict=True), start=1):
-        reals.SetValue(i, value)
-        integers.SetValue(i, count)
-    return reals, integers
-
-
-def _side_surface(side: Side) -> Geom_BSplineSurface:
-    points = TColgp_Array2OfPnt(1, len(side.lower), 1, 2)
-    for column, poles in enumerate((side.lower, side.upper), start=1):
-        for row, pole in enumerate(poles.tolist(), start=1):
-            points.SetValue(row, column, gp_Pnt(*pole))
-    u, u_counts = _multiplicities(side.knots)
-    v, v_counts = _knots((0.0, side.width), (2, 2))
-    return Geom_BSplineSurface(points, u, v, u_counts, v_counts, 3, 1)
-
-
-def _ruled_surface(
-    near: Geom_BSplineCurve, far: Geom_BSplineCurve, thickness: float
-) -> Geom_BSplineSurface:
-    """Between two curves with the same knots; the second parameter runs from 0 to *thickness*."""
-    count = near.NbPoles()
-    points = TColgp_Array2OfPnt(1, count, 1, 2)
-    for column, curve in enumerate((near, far), start=1):
-        for row in range(1, count + 1):
-            points.SetValue(row, column, curve.Pole(row))
-    w, w_counts = _knots((0.0, thickness), (2, 2))
-    u = TColStd_Array1OfReal(1, near.NbKnots())
-    u_counts = TColStd_Array1OfInteger(1, near.NbKnots())
-    near.Knots(u)
-    near.Multiplicities(u_counts)
-    return Geom_BSplineSurface(points, u, w, u_counts, w_counts, near.Degree(), 1)
-
-
-def _bilinear(ends: Sequence[Sequence[Floats]], height: float, depth: float) -> Geom_BSplineSurface:
-    """Over low and high of the near side, then of the far one, at 0 .. height and 0 .. depth."""
-    points = TColgp_Array2OfPnt(1, 2, 1, 2)
-    for column, side in enumerate(ends, start=1):
-        for row, end in enumerate(side, start=1):
-            points.SetValue(row, column, gp_Pnt(*end.tolist()))
-    u, u_counts = _knots((0.0, height), (2, 2))
-    w, w_counts = _knots((0.0, depth), (2, 2))
-    return Geom_BSplineSurface(points, u, w, u_counts, w_counts, 1, 1)

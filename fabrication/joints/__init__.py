@@ -7,7 +7,8 @@ from fabrication.joints.joint import Joint
 from fabrication.joints.reciprocal import ReciprocalJoint
 from fabrication.joints.scissor import AnglePlay, ScissorJoint, angle_play
 from fabrication.joints.slot import SlotJoint
-from fabrication.joints.stud import Stud, StudJoint
+from fabrication.joints.stud import StudJoint
+from fabrication.joints.stud_shapes import Stud
 
 JOINTS: dict[str, type[Joint]] = {
     "slot": SlotJoint,

@@ -33,6 +33,9 @@ from gridshell import SettingError
 from gridshell.arrays import Floats
 
 _WASHER_COLOUR = (0.75, 0.77, 0.80)
+_MISS = 0.05
+"""Distance between two strips' curves at a crossing above which it is told, mm."""
+
 _ALIKE = np.radians(0.5)
 """Node angles are rounded to steps of this for the washers: their arms need not be exact."""
 
@@ -143,7 +146,11 @@ class DoubleSlotJoint(Joint):
             fixtures=fixtures,
             connectors=(washers, *bolts),
             bill=(*self._bill(washers), *_bolt_lines(lengths, self.bolt)),
-            findings=(*slot_findings(design), *self._findings(design, regular)),
+            findings=(
+                *slot_findings(design),
+                *self._findings(design, regular),
+                *_miss_finding(made),
+            ),
         )
 
     # ---- washers and bolts ---------------------------------------------------------------------
@@ -268,6 +275,24 @@ class DoubleSlotJoint(Joint):
                     f"beyond the crossings, which reach {needed:.1f} mm. Use beyond = "
                     f"{np.ceil(needed):g}.",
                 )
+
+
+def _miss_finding(made: Arrangement) -> Iterator[Finding]:
+    """Strips that pass each other at different heights, where their curves are not asymptotic."""
+    worst = int(np.argmax(made.miss)) if len(made.miss) else 0
+    miss = float(made.miss[worst]) if len(made.miss) else 0.0
+    if miss > _MISS:
+        node = [node for node in made.strips.nodes if node.regular][worst].name
+        yield Finding(
+            "crossing-miss",
+            Severity.WARNING,
+            node,
+            miss,
+            _MISS,
+            "mm",
+            f"The two strips at {node} pass each other {miss:.2f} mm apart: their axes are not "
+            "asymptotic there. Make the net exact, use more lamellas, or a smaller spacing.",
+        )
 
 
 def _bolt_lines(lengths: Sequence[float], diameter: float) -> Iterator[BillLine]:

@@ -12,7 +12,6 @@ curve with rate of twist w its curvature is w^2 d / (1 + w^2 d^2).
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -25,53 +24,22 @@ from fabrication.jointed import BillLine, Feature, Fixture, Jointed
 from fabrication.joints.joint import Joint
 from fabrication.joints.node_frames import bisector_frames, node_tangents
 from fabrication.joints.stud_findings import stud_findings
+from fabrication.joints.stud_shapes import (
+    Stud,
+    stud_lines,
+    stud_need,
+    stud_prisms,
+    stud_sizes,
+)
 from fabrication.node import Node, rows_by_lamella
 from fabrication.outlines import Frame
 from fabrication.rooms import room_beside
-from fabrication.shapes import Body, Prisms, Shape
+from fabrication.shapes import Prisms
 from fabrication.shear_blocks import Blocks, ShearBlock, made_grip, shear_blocks
-from fabrication.stock import Material, require_distance, require_positive
+from fabrication.stock import require_distance, require_positive
 from fabrication.structures import Structure
 from gridshell import SettingError
 from gridshell.arrays import Floats, Indices
-
-_COLOUR = (0.72, 0.56, 0.36)
-_ANGLE_STEP = np.radians(0.5)
-
-
-@dataclass(frozen=True)
-class Stud:
-    """The stud of a node.
-
-    Parameters
-    ----------
-    material : what it is cut from.
-    size : distance between opposite sides, mm; as much as the strips leave unless said otherwise.
-    length : along the node axis, mm; over both levels unless said otherwise.
-    wall : of a pipe, mm; 0 for a solid stud.
-    fit : between the stud and each strip, mm.
-    step : sizes are rounded down to steps of this, and angles to half degrees, so that many studs
-        are alike, mm; 0 makes every stud to measure.
-
-    Raises
-    ------
-    SettingError
-        For a size that is not positive.
-    """
-
-    material: Material
-    size: float | None = None
-    length: float | None = None
-    wall: float = 0.0
-    fit: float = 0.2
-    step: float = 0.1
-
-    def __post_init__(self) -> None:
-        for key in ("size", "length"):
-            if getattr(self, key) is not None:
-                require_positive(f"stud.{key}", getattr(self, key))
-        for key in ("wall", "fit", "step"):
-            require_distance(f"stud.{key}", getattr(self, key))
 
 
 @dataclass(frozen=True)
@@ -126,15 +94,18 @@ class StudJoint(Joint):
         nodes = [node for node in design.nodes if node.regular]
         tangents = node_tangents(design, nodes)
         rooms = self._rooms(design, made, nodes, tangents)
-        sizes, angles = self._sizes(rooms, nodes)
+        sizes, angles = stud_sizes(self.stud, rooms, nodes)
         length = (
             2.0 * level + design.profile.width if self.stud.length is None else (self.stud.length)
         )
-        studs = self._studs(nodes, bisector_frames(nodes, tangents), sizes, angles, length)
+        studs = stud_prisms(
+            self.stud, nodes, bisector_frames(nodes, tangents), sizes, angles, length
+        )
         holes, fixtures = self._holes(design, made, nodes, tangents)
         bolts, bolt_bill = self._bolts(design, made, nodes, tangents, level)
         blocks = self._blocks(design, made, sizes, nodes)
-        need = self._need(nodes)
+        need = stud_need(self.stud, nodes)
+        hole = self.bolt + HOLE_PLAY if self.bolt else 0.0
         found = stud_findings(
             design,
             made,
@@ -143,7 +114,7 @@ class StudJoint(Joint):
             room=rooms.min(axis=1, initial=np.inf),
             level=level,
             length=length,
-            hole=self.bolt + HOLE_PLAY if self.bolt else 0.0,
+            hole=hole,
             spacing=self.spacing,
             fit=self.stud.fit,
         )
@@ -151,6 +122,7 @@ class StudJoint(Joint):
             mark: Cuts(holes=tuple(sorted([*own, *blocks.holes[mark]], key=lambda h: h.x)))
             for mark, own in holes.items()
         }
+        lines = stud_lines(self.stud, studs, length=length, hole=hole)
         return Jointed(
             design=design,
             strips=made.strips,
@@ -158,7 +130,7 @@ class StudJoint(Joint):
             cuts=cuts,
             fixtures=(*fixtures, *blocks.fixtures),
             connectors=(studs, *bolts, *blocks.connectors),
-            bill=(*self._bill(studs, length), *bolt_bill, *blocks.bill),
+            bill=(*lines, *bolt_bill, *blocks.bill),
             findings=(*found, *blocks.findings),
         )
 
@@ -212,58 +184,6 @@ class StudJoint(Joint):
             column = rooms[:, strip.family - 1]
             column[rows] = np.minimum(column[rows], 2.0 * found)
         return rooms
-
-    def _sizes(self, rooms: Floats, nodes: Sequence[Node]) -> tuple[Floats, Floats]:
-        """(n,) distance between opposite sides of each stud, mm, and its angle."""
-        angle = np.array([node.angle for node in nodes], dtype=float)
-        if self.stud.size is not None:
-            sizes = np.full(len(nodes), self.stud.size)
-        else:
-            sizes = rooms.min(axis=1, initial=np.inf) - 2.0 * self.stud.fit
-        if self.stud.step == 0.0:
-            return sizes, angle
-        turned = np.round(angle / _ANGLE_STEP) * _ANGLE_STEP
-        if self.stud.size is None:
-            sizes = sizes / (1.0 + _leaning(angle, turned))
-            sizes = np.floor(sizes / self.stud.step + 1e-9) * self.stud.step
-        return sizes, turned
-
-    def _need(self, nodes: Sequence[Node]) -> Floats:
-        """(n,) room that each stud needs at least, mm: that of its own size where it has one."""
-        if self.stud.size is None:
-            return np.full(len(nodes), 2.0 * self.stud.wall)
-        angle = np.array([node.angle for node in nodes], dtype=float)
-        if self.stud.step == 0.0:
-            return np.full(len(nodes), self.stud.size)
-        turned = np.round(angle / _ANGLE_STEP) * _ANGLE_STEP
-        return np.asarray(self.stud.size * (1.0 + _leaning(angle, turned)))
-
-    def _studs(
-        self,
-        nodes: Sequence[Node],
-        frames: Sequence[Frame],
-        sizes: Floats,
-        angles: Floats,
-        length: float,
-    ) -> Prisms:
-        shapes: dict[tuple[float, float], int] = {}
-        made: list[Shape] = []
-        bodies = []
-        for node, frame, size, angle in zip(nodes, frames, sizes, angles, strict=True):
-            if not size > 2.0 * self.stud.wall:
-                continue
-            key = round(float(size), 6), round(float(angle), 9)
-            if key not in shapes:
-                shapes[key] = len(made)
-                hollow = self.stud.wall > 0.0
-                inside = (rhombus(size - 2.0 * self.stud.wall, angle),) if hollow else ()
-                outline = rhombus(float(size), float(angle))
-                made.append(
-                    Shape(f"S{len(made) + 1}", outline, -length / 2.0, length / 2.0, inside)
-                )
-            bodies.append(Body(f"{node.name}-stud", shapes[key], frame))
-        material = self.stud.material.name
-        return Prisms("studs", _COLOUR, tuple(made), tuple(bodies), material)
 
     # ---- bolts ---------------------------------------------------------------------------------
 
@@ -322,35 +242,6 @@ class StudJoint(Joint):
         angle = np.array([node.angle for node in nodes], dtype=float)
         reach = sizes / 2.0 * (1.0 + np.abs(np.cos(angle))) / np.sin(angle)
         return shear_blocks(self.blocks, design, made, keep=float(reach.max(initial=0.0)))
-
-    # ---- bill ---------------------------------------------------------------------------------
-
-    def _bill(self, studs: Prisms, length: float) -> Iterator[BillLine]:
-        used = Counter(body.shape for body in studs.bodies)
-        kind = f"pipe, wall {self.stud.wall:g} mm" if self.stud.wall else "solid"
-        drilled = f"; drilled {self.bolt + HOLE_PLAY:g} mm at both levels" if self.bolt else ""
-        for number, shape in enumerate(studs.shapes):
-            (x, _), (_, y) = np.abs(shape.outline[[0, 1], :2])
-            size, angle = 2.0 * x * y / np.hypot(x, y), 2.0 * np.degrees(np.arctan2(y, x))
-            yield BillLine(
-                "stud",
-                f"{shape.mark}: {size:.1f} mm between sides, {angle:.1f} degrees, {length:g} long",
-                used[number],
-                material=self.stud.material.name,
-                mass=shape.volume * self.stud.material.density * 1e-9,
-                note=f"{kind}{drilled}",
-            )
-
-
-def rhombus(size: float, angle: float) -> Floats:
-    """(4, 3) outline with opposite sides *size* mm apart; x lies along the bisector of *angle*."""
-    x, y = size / (2.0 * np.sin(angle / 2.0)), size / (2.0 * np.cos(angle / 2.0))
-    return np.array([[x, 0.0, 0.0], [0.0, y, 0.0], [-x, 0.0, 0.0], [0.0, -y, 0.0]])
-
-
-def _leaning(angle: Floats, turned: Floats) -> Floats:
-    """Share of its size that a stud of the angle *turned* needs more between strips at *angle*."""
-    return np.asarray(np.abs(turned - angle) * (1.0 + np.abs(np.cos(angle))) / np.sin(angle))
 
 
 def _passing(design: Structure, made: Arrangement) -> Iterator[tuple[int, Indices, Floats]]:

@@ -17,7 +17,7 @@ import fabrication as fab
 import gridshell as gs
 from fabrication.cut import Floor, Hole, Relief, outline
 from fabrication.fitting import clash_volumes
-from fabrication.joints.stud import rhombus
+from fabrication.joints.stud_shapes import rhombus
 from fabrication.package import _optimise, _route
 from fabrication.parts import parts_of
 from fabrication.routes import Clock

@@ -226,3 +226,11 @@ def test_sizes_that_are_none_are_refused(value):
     for key in ("thickness", "arm", "beyond"):
         with pytest.raises(gs.SettingError):
             replace(WASHER, **{key: value})
+
+
+def test_strips_that_miss_each_other_are_told_where_the_net_is_not_asymptotic(saddle):
+    (found,) = [
+        f for f in JOINT.build(thin(saddle.structure)).findings if f.code == "crossing-miss"
+    ]
+    assert 0.05 < found.value < 0.5
+    assert found.where in found.message

@@ -9,7 +9,7 @@ import gridshell as gs
 from fabrication.finding import Severity
 from fabrication.fitting import clash_volumes
 from fabrication.jointed import Feature
-from fabrication.joints.stud import rhombus
+from fabrication.joints.stud_shapes import rhombus
 from fabrication.parts import parts_of
 
 PROFILE = fab.Profile(width=60.0, thickness=4.0, material=fab.POPLAR_PLY)
