@@ -90,7 +90,7 @@ def run(
     """
     out = Path(out)
     clock = Clock(announce)
-    route = _route(project)
+    route = route_of(project)
     with draft_folder(out, names=(*FILES, *route.files)) as draft, kernel() as cad:
         design = _design(project, route, Path(folder), clock)
         report = _write(project, design, draft, cad, clock)
@@ -107,7 +107,8 @@ def _sheets_before(out: Path) -> list[str]:
         return []  # none, or not ours
 
 
-def _route(project: Project) -> Route:
+def route_of(project: Project) -> Route:
+    """The route of the project's kind of net."""
     if project.panels is not None:
         return PanelRoute(project, project.panels)
     if project.profile is not None and project.joint is not None:
@@ -122,7 +123,7 @@ def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Desi
     begun = start(project, folder, clock.stage)
     with clock.stage("optimise"):
         recipe = route.recipe()
-        result = _found(_optimise(project, recipe, begun), begun)
+        result = _found(optimised(project, recipe, begun), begun)
         quality = gs.net_quality(
             result.control,
             planarity=route.planarity,
@@ -166,7 +167,8 @@ def _found(result: gs.OptimizedNet, begun: Start) -> gs.OptimizedNet:
         ) from None
 
 
-def _optimise(project: Project, recipe: gs.NetRecipe, begun: Start) -> gs.OptimizedNet:
+def optimised(project: Project, recipe: gs.NetRecipe, begun: Start) -> gs.OptimizedNet:
+    """The net from where it begins, held and kept to its surface as the project says."""
     net = project.net
     reference = begun.surface if net.keep_to_surface else None
     return gs.optimize(begun.control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)

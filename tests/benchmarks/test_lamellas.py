@@ -18,7 +18,7 @@ import gridshell as gs
 from fabrication.cut import Floor, Hole, Relief, outline
 from fabrication.fitting import clash_volumes
 from fabrication.joints.stud_shapes import rhombus
-from fabrication.package import _optimise, _route
+from fabrication.package import optimised, route_of
 from fabrication.parts import parts_of
 from fabrication.routes import Clock
 from fabrication.starts import start
@@ -39,9 +39,9 @@ def tight(name, **joint):
         update={"joint": section, "bars": None, "papers": None, "sheet": sheet}
     )
     clock = Clock(lambda stage: None)
-    route = _route(bare)
+    route = route_of(bare)
     begun = start(bare, EXAMPLES, clock.stage)
-    control = _optimise(bare, route.recipe(), begun).require().control
+    control = optimised(bare, route.recipe(), begun).require().control
     return route.build(control, clock)
 
 

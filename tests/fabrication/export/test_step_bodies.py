@@ -1,11 +1,22 @@
+import pickle
+import subprocess
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+
 import build123d
+import cadquery
 import pytest
 
+import fabrication as fab
 from fabrication.bodies import structure_bodies
+from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
-from fabrication.export.step_bodies import write_bodies
+from fabrication.export.step_bodies import strip_kinds, write_assembly, write_bodies
 from fabrication.export.step_prism_reader import read_prisms
 from fabrication.outlines import outline_area
+from fabrication.parts import parts_of
+from fabrication.shapes import joined
 
 pytestmark = pytest.mark.xdist_group("kernel")
 
@@ -59,3 +70,64 @@ def test_the_same_bodies_give_the_same_geometry(tower, tmp_path):
 def test_a_folder_that_is_not_there_is_an_output_error(tower, tmp_path):
     with pytest.raises(OutputError, match="cannot be written"):
         write_bodies(structure_bodies(tower), tmp_path / "none" / "x.step", name="tower")
+
+
+# ---- strips and connectors in one assembly -------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def double(pair):
+    """Double lamellas with their washers and bolts."""
+    washer = fab.StarWasher(4.0, 18.0, 8.0, fab.S235)
+    return fab.DoubleSlotJoint(30.0, 8.0, washer).build(pair.structure)
+
+
+def write_all(jointed, path):
+    kinds = strip_kinds(jointed.strips, fab.solids(jointed.strips, parts_of(jointed)))
+    bodies = joined(*jointed.connectors)
+    written = datetime(2026, 1, 1, tzinfo=UTC)
+    write_assembly(path, name="roof", strips=kinds, bodies=bodies, written=written)
+    return path
+
+
+def test_names_tree_and_colours_survive_another_import(double, tmp_path):
+    whole = cadquery.Assembly.importStep(str(write_all(double, tmp_path / "roof.step")))
+    assert whole.name == "roof"
+    found = {kind.name: kind.children for kind in whole.children}
+    strips = {f"family {'AB'[f - 1]}": colour for f, colour in FAMILY_COLOURS.items()}
+    wanted = strips | {kind.name: kind.colour for kind in double.connectors}
+    assert set(found) == set(wanted)
+    marks = {strip.mark for strip in double.strips.lamellas}
+    marks |= {body.mark for kind in double.connectors for body in kind.bodies}
+    assert {part.name for parts in found.values() for part in parts} == marks
+    for name, parts in found.items():
+        for part in parts:
+            assert part.color.toTuple()[:3] == pytest.approx(wanted[name], abs=5e-3)
+
+
+def test_equal_connectors_are_one_solid_beside_the_strips(double, tmp_path):
+    text = write_all(double, tmp_path / "roof.step").read_text()
+    shapes = sum(len(kind.shapes) for kind in double.connectors)
+    assert text.count("MANIFOLD_SOLID_BREP(") == len(double.strips.lamellas) + shapes
+
+
+AGAIN = """
+import pickle, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[3])
+from test_step_bodies import write_all
+write_all(pickle.loads(Path(sys.argv[1]).read_bytes()), Path(sys.argv[2]))
+"""
+
+
+def test_two_processes_write_the_same_bytes(double, tmp_path):
+    order = tmp_path / "order"
+    order.write_bytes(pickle.dumps(double))
+    files = []
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        path = tmp_path / folder / "roof.step"
+        here = str(Path(__file__).parent)
+        subprocess.run([sys.executable, "-c", AGAIN, str(order), str(path), here], check=True)
+        files.append(path.read_bytes())
+    assert files[0] == files[1]
