@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians
+from pathlib import Path
 
 import numpy as np
 
 import gridshell as gs
+from fabrication.angle_settings import angle_of, conditions_of
 from fabrication.assembling import Assembly, assembly_order
 from fabrication.checks import check
 from fabrication.coupon import Coupon, coupon
@@ -55,11 +57,17 @@ class LamellaRoute:
         strips = "sheet" if self.project.bars is None else "bar"
         return (f"sheets/{strips}-01.dxf", "bays.csv", "bill.csv", "drawings.pdf", *facade)
 
-    def recipe(self) -> gs.NetRecipe:
+    def recipe(self, folder: Path) -> gs.NetRecipe:
         """An A-net."""
         net = self.project.net
-        angle = None if net.angle is None else radians(net.angle)
-        return gs.a_net(angle=angle, steps=net.steps, tolerance=net.tolerance)
+        with keyed("net.angle"):
+            angle = angle_of(net.angle, folder)
+        return gs.a_net(
+            angle=angle,
+            conditions=conditions_of(net),
+            steps=net.steps,
+            tolerance=net.tolerance,
+        )
 
     def build(self, control: gs.ControlMesh, clock: Clock) -> LamellaSystem:
         """Lamellas along one of the two diagonal meshes."""

@@ -13,6 +13,8 @@ from dataclasses import asdict, dataclass
 from glob import escape
 from pathlib import Path
 
+import numpy as np
+
 import gridshell as gs
 from fabrication.delivery import draft_folder, move_in
 from fabrication.finding import Finding
@@ -21,6 +23,7 @@ from fabrication.lamella_route import LamellaRoute
 from fabrication.moulds import moulds
 from fabrication.net_checks import check_net
 from fabrication.panel_route import PanelRoute
+from fabrication.placing import keyed
 from fabrication.remesh_job import Remeshed
 from fabrication.routes import Announce, Clock, Report, Route, System
 from fabrication.sections import Project
@@ -122,7 +125,7 @@ def route_of(project: Project) -> Route:
 def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Design:
     begun = start(project, folder, clock.stage)
     with clock.stage("optimise"):
-        recipe = route.recipe()
+        recipe = route.recipe(folder)
         result = _found(optimised(project, recipe, begun), begun)
         quality = gs.net_quality(
             result.control,
@@ -170,8 +173,12 @@ def _found(result: gs.OptimizedNet, begun: Start) -> gs.OptimizedNet:
 def optimised(project: Project, recipe: gs.NetRecipe, begun: Start) -> gs.OptimizedNet:
     """The net from where it begins, held and kept to its surface as the project says."""
     net = project.net
-    reference = begun.surface if net.keep_to_surface else None
-    return gs.optimize(begun.control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
+    control, reference = begun.control, begun.surface if net.keep_to_surface else None
+    if net.supports is None:
+        return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
+    with keyed("net"):
+        control, held = gs.stand_on(control, np.array(net.supports))
+    return gs.optimize(control, recipe, anchor=held, reference=reference)
 
 
 # ---- files -------------------------------------------------------------------------------------

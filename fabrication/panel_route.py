@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from math import degrees, radians
+from math import degrees
 from pathlib import Path
 
 import gridshell as gs
+from fabrication.angle_settings import angle_of
 from fabrication.beam_layout import Beam, BeamSection, beams
 from fabrication.bodies import structure_bodies
 from fabrication.errors import KernelError
@@ -22,6 +23,7 @@ from fabrication.panel_structure import (
     PanelStructure,
     panelled,
 )
+from fabrication.placing import keyed
 from fabrication.routes import (
     CLOSURE_LIMIT,
     VOLUME_LIMIT,
@@ -58,12 +60,14 @@ class PanelRoute:
         plates = () if self.project.supports is None else ("sheets/plates-01.dxf",)
         return ("sheets/panels-01.dxf", *plates)
 
-    def recipe(self) -> gs.NetRecipe:
+    def recipe(self, folder: Path) -> gs.NetRecipe:
         """A net of planar quads; a rim that is free lies flat for the plates there, too."""
         net = self.project.net
         free = net.anchor == "free" and self.project.supports is not None
+        with keyed("net.angle"):
+            angle = angle_of(net.angle, folder)
         return gs.pq_net(
-            angle=None if net.angle is None else radians(net.angle),
+            angle=angle,
             rhombus=net.rhombus,
             square=net.square,
             conditions=(gs.FlatRim(),) if free else (),

@@ -88,7 +88,7 @@ def require_panels(project: Project, path: Path) -> None:
         raise ProjectError(
             "Squares have right angles",
             where=f"{path}, net.angle",
-            value=f"{net.angle:g} with net.square = true",
+            value=f"{net.angle} with net.square = true",
             limit="90 degrees",
             advice="net.rhombus = true in place of net.square, or no net.angle",
         )

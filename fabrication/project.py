@@ -17,6 +17,8 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
+from fabrication.angle_sections import ANGLE_CHOICES, FieldSection
+from fabrication.angle_settings import require_angle
 from fabrication.errors import ProjectError
 from fabrication.joint_sections import (
     BlocksSection,
@@ -72,6 +74,7 @@ def read_project(path: Path | str) -> Project:
     except ValidationError as error:
         raise _explained(path, error) from None
     require_makeable(project, path)
+    require_angle(project, path)
     require_panels(project, path)
     return project
 
@@ -136,6 +139,7 @@ _LIMITS: dict[str, Callable[[dict[str, Any]], str]] = {
     "tuple_type": lambda _: "a list of 2 numbers",
     "too_long": lambda c: f"a list of {c['max_length']} numbers",
     "literal_error": lambda c: c["expected"].replace(" or ", ", ").replace("'", ""),
+    "angle_choice": lambda _: ANGLE_CHOICES,
     "value_error": lambda c: str(c["error"]),
 }
 """What is allowed instead, by pydantic's name for the mistake."""
@@ -216,8 +220,10 @@ def _sections() -> dict[str, type[Section]]:
         "facade": FacadeSection,
         "panel_sheet": SheetSection,
     }
+    section: type[Section]
+    for section in get_args(FieldSection):
+        named[f"{get_args(section.model_fields['kind'].annotation)[0]} angle"] = section
     for union in (SurfaceSection, PatchSection, ConnectorSection, JointSection):
-        section: type[Section]
         for section in get_args(get_args(union)[0]):
             tag = section.model_fields.get("kind") or section.model_fields["layout"]
             named[get_args(tag.annotation)[0]] = section
@@ -230,7 +236,9 @@ def _key(location: tuple[int | str, ...]) -> str:
     fields = {name for section in sections for name in section.model_fields}
     *path, last = location or ("",)
     shown = [part for part in path if isinstance(part, int) or part in fields]
-    branch = last not in fields and (last in _sections() or str(last).endswith(" material"))
+    branch = last not in fields and (
+        last in _sections() or str(last).endswith((" material", " angle"))
+    )
     return ".".join(str(part) for part in (shown if branch else [*shown, last]))
 
 

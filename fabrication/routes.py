@@ -87,8 +87,8 @@ class Route(Protocol):
     def files(self) -> tuple[str, ...]:
         """Sheets that every run makes, among others."""
 
-    def recipe(self) -> gs.NetRecipe:
-        """The conditions on the net."""
+    def recipe(self, folder: Path) -> gs.NetRecipe:
+        """The conditions on the net; what they name as files lies in *folder*."""
 
     def build(self, control: gs.ControlMesh, clock: Clock) -> System:
         """The system on *control*, optimised."""

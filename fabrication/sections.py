@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from fabrication.angle_sections import AngleChoice, NodeAngle, Point
 from fabrication.joint_sections import JointSection
 from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection
 from fabrication.panel_sections import (
@@ -23,7 +24,6 @@ from fabrication.panel_sections import (
 )
 from fabrication.section_types import (
     Distance,
-    Number,
     Positive,
     Section,
     SheetMetal,
@@ -47,12 +47,18 @@ class NetSection(Section):
 
     kind: Literal["asymptotic", "planar"] = "asymptotic"
     angle: Annotated[
-        Annotated[Number, Field(gt=0.0, lt=180.0)] | None,
-        Field(description="the angles of the net it begins with"),
+        AngleChoice | None, Field(description="the angles of the net it begins with")
     ] = None
+    angle_between: Annotated[
+        tuple[NodeAngle, NodeAngle] | None, Field(description="any, of asymptotic nets only")
+    ] = None
+    near_rhombi: bool = False
     rhombus: bool = False
     square: bool = False
-    anchor: Literal["free", "boundary-pinned", "boundary-glide"]
+    anchor: Literal["free", "boundary-pinned", "boundary-glide", "supports"]
+    supports: Annotated[
+        tuple[Point, ...] | None, Field(description="with anchor = 'supports' only")
+    ] = None
     keep_to_surface: bool = True
     skin: Literal["D1", "D2", "P"] = "D1"
     steps: Annotated[Whole, Field(ge=1, le=10_000)] = 30
@@ -179,7 +185,13 @@ def _foreign(project: Project) -> Iterator[InitErrorDetails]:
         yield _mistake(("connector",), "no [supports]", "projects with [supports]")
     if project.mesh is not None and getattr(project.mesh, _ALONG[other]) is not None:
         yield _mistake(("mesh", _ALONG[other]), f"net.kind = '{kind}'", f"mesh.{_ALONG[kind]}")
+    held = project.net.anchor == "supports"
+    if project.net.supports is not None and not held:
+        yield _mistake(("net", "supports"), f"anchor = '{project.net.anchor}'", "anchor 'supports'")
     if kind == "planar":
+        for name in ("angle_between", "near_rhombi"):
+            if getattr(project.net, name):
+                yield _mistake(("net", name), "net.kind = 'planar'", "net.kind = 'asymptotic' only")
         return
     for name in ("rhombus", "square"):
         if getattr(project.net, name):
@@ -193,6 +205,8 @@ def _missing(project: Project) -> Iterator[InitErrorDetails]:
     for name in _NEEDED[kind]:
         if getattr(project, name) is None:
             yield InitErrorDetails(type="missing", loc=(name,), input=None)
+    if project.net.anchor == "supports" and project.net.supports is None:
+        yield InitErrorDetails(type="missing", loc=("net", "supports"), input=None)
     if project.mesh is not None and project.mesh.along is None:
         yield InitErrorDetails(type="missing", loc=("mesh", _ALONG[kind]), input=None)
 

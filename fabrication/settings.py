@@ -25,6 +25,7 @@ from fabrication.source_sections import (
     MeshSection,
     PatchSection,
     RemeshSource,
+    SingularPatchSection,
     SurfaceSource,
 )
 from gridshell.arrays import Floats
@@ -56,6 +57,8 @@ def patch_of(section: PatchSection) -> gs.Patch:
         return gs.AsymptoticPatch(section.p, section.q, section.lamellas)
     if isinstance(section, ConjugatePatchSection):
         return gs.ConjugatePatch(section.v, section.panels, section.u)
+    if isinstance(section, SingularPatchSection):
+        return gs.SingularPatch(section.valence, section.cells, section.reach, section.cut)
     return gs.BisectingPatch(section.v, section.cells, section.u)
 
 
@@ -124,7 +127,7 @@ def _require_strips(
 
 
 def _require_patch(source: SurfaceSource, path: Path, *, planar: bool) -> None:
-    layouts = ("conjugate",) if planar else ("asymptotic", "bisecting")
+    layouts = ("conjugate",) if planar else ("asymptotic", "bisecting", "singular")
     if source.patch.layout not in layouts:
         raise ProjectError(
             "This layout belongs to another kind of net",
@@ -144,6 +147,11 @@ def _require_patch(source: SurfaceSource, path: Path, *, planar: bool) -> None:
             advice="give u = [first, last], or use a surface of revolution",
         )
     _require_count(surface, patch, path)
+    if isinstance(patch, gs.SingularPatch):
+        with placed(path, "patch"):
+            far = float(np.abs(gs.control_patch(surface, patch).vertices).max())
+        _require_reach(far, path)
+        return
     if isinstance(surface, gs.Torus):
         return  # its elliptic functions are scipy's
     u, v = _corners(surface, patch)
@@ -153,6 +161,10 @@ def _require_patch(source: SurfaceSource, path: Path, *, planar: bool) -> None:
         else:
             surface.require_hyperbolic(u, v)
         far = float(np.abs(surface.point(u, v)).max())
+    _require_reach(far, path)
+
+
+def _require_reach(far: float, path: Path) -> None:
     if not far <= LARGEST:
         raise ProjectError(
             "The patch is too large",
@@ -166,6 +178,9 @@ def _require_patch(source: SurfaceSource, path: Path, *, planar: bool) -> None:
 def _require_count(surface: gs.AnalyticSurface, patch: gs.Patch, path: Path) -> None:
     if isinstance(patch, gs.AsymptoticPatch):
         key, value, nodes = "lamellas", list(patch.lamellas), float(np.prod(patch.lamellas))
+    elif isinstance(patch, gs.SingularPatch):
+        nodes = patch.valence * patch.cells**2 / 2.0
+        key, value = "cells", [patch.cells]
     elif isinstance(patch, gs.ConjugatePatch):
         key, value, nodes = "panels", list(patch.panels), float(np.prod(patch.panels))
     else:
@@ -182,7 +197,10 @@ def _require_count(surface: gs.AnalyticSurface, patch: gs.Patch, path: Path) -> 
         )
 
 
-def _corners(surface: gs.AnalyticSurface, patch: gs.Patch) -> tuple[Floats, Floats]:
+_Rectangle = gs.AsymptoticPatch | gs.BisectingPatch | gs.ConjugatePatch
+
+
+def _corners(surface: gs.AnalyticSurface, patch: _Rectangle) -> tuple[Floats, Floats]:
     """Parameters (u, v), each (5,), of the corners of *patch* and its middle."""
     if isinstance(patch, gs.AsymptoticPatch):
         p, q = (np.append(x, x.mean()) for x in _rectangle(patch.p, patch.q))

@@ -145,8 +145,18 @@ class ConjugatePatchSection(Section):
     u: Annotated[Range | None, Field(description="all around")] = None
 
 
+class SingularPatchSection(Section):
+    """Sectors of control quads around a central singularity, on Enneper's surfaces (Fig. 13)."""
+
+    layout: Literal["singular"]
+    valence: Whole
+    cells: Count
+    reach: Number
+    cut: Annotated[Whole, Field(ge=0)] = 0
+
+
 PatchSection = Annotated[
-    AsymptoticPatchSection | BisectingPatchSection | ConjugatePatchSection,
+    AsymptoticPatchSection | BisectingPatchSection | ConjugatePatchSection | SingularPatchSection,
     Field(discriminator="layout"),
 ]
 

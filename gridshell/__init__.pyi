@@ -15,14 +15,19 @@ from .anchors import (
 from .anchors import (
     Pinned as Pinned,
 )
+from .angle_fields import AngleAlong as AngleAlong
+from .angle_fields import FormulaAngle as FormulaAngle
+from .angle_fields import RadialAngle as RadialAngle
+from .angle_fields import SampledAngle as SampledAngle
 from .angles import Angle as Angle
-from .angles import RadialAngle as RadialAngle
 from .coarse_to_fine import coarser as coarser
 from .coarse_to_fine import finer as finer
 from .coarse_to_fine import optimize_coarse_to_fine as optimize_coarse_to_fine
+from .conditions import AngleBetween as AngleBetween
 from .conditions import EdgeLengths as EdgeLengths
 from .conditions import FlatRim as FlatRim
 from .conditions import MirrorPlane as MirrorPlane
+from .conditions import NearRhombi as NearRhombi
 from .curvature import (
     principal_curvatures as principal_curvatures,
 )
@@ -179,6 +184,7 @@ from .patch import (
 from .patch import (
     Patch as Patch,
 )
+from .patch import SingularPatch as SingularPatch
 from .patch import (
     control_patch as control_patch,
 )
@@ -238,6 +244,7 @@ from .solve import Stop as Stop
 from .solve import Weight as Weight
 from .soundness import remarks as remarks
 from .soundness import require_sound as require_sound
+from .supports import stand_on as stand_on
 from .surface import (
     AnalyticSurface as AnalyticSurface,
 )

@@ -7,7 +7,6 @@ at the node angle: the corners of a control quad (eq. 4), or the ends of a star 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,27 +19,6 @@ AngleField = Callable[[Points], Floats]
 
 Angle = float | Floats | AngleField
 """Radians: one for all crossings, one for each (m,), or a field over their centres."""
-
-
-@dataclass(frozen=True)
-class RadialAngle:
-    """An angle that changes linearly with the distance from a centre (Fig. 13).
-
-    Parameters
-    ----------
-    centre : mm.
-    radii : distances where the first and the last angle hold, mm.
-    angles : at these distances, radians; constant inside and outside of them.
-    """
-
-    centre: tuple[float, float, float]
-    radii: tuple[float, float]
-    angles: tuple[float, float]
-
-    def __call__(self, points: Points) -> Floats:
-        """(m,) angles at *points* (m, 3), mm."""
-        distance = np.linalg.norm(points - np.array(self.centre), axis=1)
-        return np.asarray(np.interp(distance, self.radii, self.angles))
 
 
 def face_crossings(control: ControlMesh) -> Indices:

@@ -14,16 +14,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gridshell.anchors import Anchor
-from gridshell.arrays import Floats, Indices, Points
-from gridshell.constraints import Fairness
+from gridshell.angles import Angle
+from gridshell.arrays import Indices, Points
 from gridshell.mesh import ControlMesh, QuadMesh, diagonal_stars, edge_stars, two_colouring
 from gridshell.mesh.parity import alternating_labels
 from gridshell.optimization import OptimizedNet, optimize
 from gridshell.pose import pose
 from gridshell.recipes import NetRecipe
-from gridshell.solve import Problem, Step, Stop, Term, Weight, solve
+from gridshell.solve import Step
+from gridshell.spreading import spread
 from gridshell.surface import Surface
-from gridshell.terms import Planarity, polyline_triples, target_angles
+from gridshell.terms import Planarity, target_angles
 
 SMALLEST = 300
 """Quads below which a net is not made coarser."""
@@ -90,7 +91,7 @@ def finer(control: ControlMesh) -> ControlMesh:
     start = np.concatenate([mesh.vertices, (a + b) / 2.0, mesh.vertices[mesh.quads].mean(axis=1)])
     quads = QuadMesh(start, parts.reshape(-1, 4))
     fine = ControlMesh(quads, two_colouring(quads))
-    return fine.moved(_spread(fine, start, np.arange(n)))
+    return fine.moved(spread(fine, start, np.arange(n)))
 
 
 def optimize_coarse_to_fine(
@@ -116,16 +117,16 @@ def optimize_coarse_to_fine(
     ------
     As :func:`gridshell.optimize`.
     """
-    targets = None
-    if recipe.angle is not None:
-        targets = target_angles(control, recipe.planarity, recipe.angle)
+    targets = recipe.angle
+    if targets is not None and not callable(targets):
+        targets = target_angles(control, recipe.planarity, targets)
     return _solve_level(control, recipe, targets, anchor, reference, progress)
 
 
 def _solve_level(
     control: ControlMesh,
     recipe: NetRecipe,
-    targets: Floats | None,
+    targets: Angle | None,
     anchor: Anchor,
     reference: Surface | None,
     progress: LevelProgress | None,
@@ -162,26 +163,16 @@ def _carried(control: ControlMesh, level: Coarser, change: Points, anchor: Ancho
     known = np.zeros_like(control.vertices)
     known[level.vertices] = change
     known[held] = 0.0
-    return _spread(control, known, np.union1d(level.vertices, held))
-
-
-def _spread(control: ControlMesh, known: Points, at: Indices) -> Points:
-    """(n, 3) values with the least second differences along the lines that are *known* at *at*."""
-    triples = polyline_triples(control)
-    fair = Term("fairness", Weight(1.0), Fairness(triples, np.zeros((len(triples), 3))), goal=True)
-    fixed = (3 * at[:, None] + np.arange(3)).ravel()
-    size = max(float(np.abs(known).max()), 1e-300)
-    linear = Stop(steps=1, tolerance=1e-300)
-    found = solve(Problem(known.size, (fair,), fixed), known.ravel() / size, linear)
-    return found.x.reshape(-1, 3) * size
+    return spread(control, known, np.union1d(level.vertices, held))
 
 
 def _coarse_targets(
-    control: ControlMesh, level: Coarser, planarity: Planarity, targets: Floats | None
-) -> Floats | None:
-    """Mean over the quads of each coarse quad, or the value at each coarse crossing."""
-    if targets is None:
-        return None
+    control: ControlMesh, level: Coarser, planarity: Planarity, targets: Angle | None
+) -> Angle | None:
+    """A field as it is; else the mean over each coarse quad, or the value at each crossing."""
+    if targets is None or callable(targets):
+        return targets
+    targets = np.asarray(targets)
     if planarity is not Planarity.EDGE_STARS:
         return np.asarray(targets[control.mesh.fans[level.centres, :4] // 4].mean(axis=1))
     at = np.full(len(control.vertices), np.nan)

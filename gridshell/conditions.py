@@ -1,4 +1,4 @@
-"""Conditions a designer adds to a recipe: prescribed lengths and planes of symmetry."""
+"""Conditions a designer adds to a recipe: lengths, bounds of the angle, planes of symmetry."""
 
 from __future__ import annotations
 
@@ -7,8 +7,15 @@ from typing import Protocol
 
 import numpy as np
 
+from gridshell.angles import face_crossings
 from gridshell.arrays import Floats, Indices, frozen, unit
-from gridshell.constraints import EdgeLength, Symmetry, planar_faces
+from gridshell.constraints import (
+    AngleBounds,
+    EdgeLength,
+    EqualDiagonals,
+    Symmetry,
+    planar_faces,
+)
 from gridshell.errors import SettingError
 from gridshell.mesh import edge_stars, position
 from gridshell.pose import Pose
@@ -65,6 +72,58 @@ class EdgeLengths:
         return Term(
             "edge length", self.weight, EdgeLength(self.edges, self.lengths / pose.scale), goal=True
         )
+
+
+@dataclass(frozen=True)
+class AngleBetween:
+    """The diagonals of every control quad meet within bounds, and are else free.
+
+    Parameters
+    ----------
+    lowest, highest : node angles, radians.
+
+    Raises
+    ------
+    SettingError
+        For an angle outside (0, 180) degrees, or bounds that leave nothing between them.
+    """
+
+    lowest: float
+    highest: float
+    weight: Weight = field(default=Weight(1.0))
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.lowest < self.highest < np.pi:
+            low, high = np.degrees([self.lowest, self.highest])
+            raise SettingError(
+                "The bounds of the node angle leave nothing between them",
+                where="angle_between",
+                value=f"{low:g} and {high:g} degrees",
+                limit="two angles between 0 and 180 degrees, the smaller first",
+                advice="60 and 90 degrees",
+            )
+
+    def term(self, pose: Pose) -> Term:
+        """How far cosines are out of bounds."""
+        quads = face_crossings(pose.net)
+        low, high = np.full(len(quads), self.lowest), np.full(len(quads), self.highest)
+        return Term("angle bounds", self.weight, AngleBounds(quads, low, high), goal=True)
+
+
+@dataclass(frozen=True)
+class NearRhombi:
+    """The black parallelograms are as near to rhombi (eq. 5) as the net's goals let them be.
+
+    A net of planar stars with an angle of its own everywhere has no freedom left for exact rhombi:
+    by the Codazzi equations equal lengths along both families go with few fields of angles. As a
+    guide the condition shares what freedom there is with fairness.
+    """
+
+    weight: Weight = field(default=Weight(1e-2, 0.3))
+
+    def term(self, pose: Pose) -> Term:
+        """Differences of diagonals, as a guide."""
+        return Term("near rhombi", self.weight, EqualDiagonals(pose.control.quads))
 
 
 @dataclass(frozen=True)

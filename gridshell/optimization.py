@@ -14,7 +14,6 @@ from gridshell.recipes import Recipe
 from gridshell.solve import End, Progress, State, Step, history, solve
 from gridshell.soundness import remarks, require_sound
 from gridshell.surface import Surface
-from gridshell.terms import target_angles
 from gridshell.verdict import Verdict, verdict
 
 
@@ -115,25 +114,15 @@ def optimize(
         solution.end,
         solution.status,
         solution.steps,
-        _quality(control, result, recipe, reference),
+        net_quality(
+            result,
+            planarity=recipe.planarity,
+            angle=recipe.angle,
+            rhombus=recipe.rhombus,
+            reference=reference,
+        ),
         verdict(problem, solution, control, result, recipe.stop.tolerance),
         remarks(control.mesh),
         solution.state,
         solution.memory,
-    )
-
-
-def _quality(
-    start: ControlMesh, result: ControlMesh, recipe: Recipe, reference: Surface | None
-) -> NetQuality:
-    """Measure *result* by the angles that were set at the places of *start*."""
-    angle = recipe.angle
-    if callable(angle):
-        angle = target_angles(start, recipe.planarity, angle)
-    return net_quality(
-        result,
-        planarity=recipe.planarity,
-        angle=angle,
-        rhombus=recipe.rhombus,
-        reference=reference,
     )

@@ -1,12 +1,14 @@
 """Starting meshes on analytic surfaces: a rectangle of parameters becomes a control mesh.
 
-Two layouts, told apart by the parameters they are given in:
+Layouts, told apart by the parameters they are given in:
 
 * :class:`AsymptoticPatch` - a rectangle in the asymptotic parameters (p, q): every lamella runs
   from edge to edge, the net D1 is a complete rectangular grid.
 * :class:`BisectingPatch` - a rectangle in u = (p + q) / 2, v = (p - q) / 2: the control mesh
   follows the bisecting (principal) lines and the lamellas cross it diagonally, as in the paper's
   Fig. 9. It may close into a ring where the surface does.
+* :class:`ConjugatePatch` - panels along u and v, for nets of planar quads.
+* :class:`SingularPatch` - sectors around a central singularity of even valence, as in Fig. 13.
 """
 
 from __future__ import annotations
@@ -15,9 +17,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gridshell.arrays import Indices
 from gridshell.errors import SettingError
 from gridshell.mesh import ControlMesh, QuadMesh, as_control_mesh, control_mesh, grid_quads
-from gridshell.surface import AnalyticSurface
+from gridshell.surface import AnalyticSurface, Enneper
 
 Range = tuple[float, float]
 
@@ -118,7 +121,62 @@ class ConjugatePatch:
             _check_counts("panels", self.panels[:1], 3)
 
 
-Patch = AsymptoticPatch | BisectingPatch | ConjugatePatch
+@dataclass(frozen=True)
+class SingularPatch:
+    """Sectors of control quads around a central singularity (Fig. 13), on Enneper's surfaces.
+
+    Enneper's surface of order k (Gauss map z^k) has a flat point of valence 2 k + 2 in its centre;
+    the control mesh follows its principal lines, which are the parallels of w = z^((k + 1) / 2).
+
+    Parameters
+    ----------
+    valence : of the central vertex, even: 4 is the regular net, 6 that of the paper.
+    cells : control quads along a sector, either way.
+    reach : |z| where the rays between the sectors end; 1 is where the surface stands upright.
+    cut : quads in a row that are cut off diagonally at the outer corner of every sector; 1 takes
+        the corner quad.
+
+    Raises
+    ------
+    SettingError
+        For an odd valence or one below 4, fewer than two cells, a reach that is not positive or
+        beyond which the surface cuts through itself, or a cut that leaves no quads.
+    """
+
+    valence: int
+    cells: int
+    reach: float
+    cut: int = 0
+
+    def __post_init__(self) -> None:
+        if self.valence % 2 or self.valence < 4:
+            raise SettingError(
+                "Families of diagonals continue around a vertex of even valence only (Fig. 4)",
+                where="valence",
+                value=f"{self.valence}",
+                limit="even, at least 4",
+                advice=f"{max(4, self.valence + self.valence % 2)}",
+            )
+        _check_counts("cells", (self.cells,), 2)
+        furthest = farthest_reach(self.valence)
+        if not 0.0 < self.reach < furthest:
+            raise SettingError(
+                "The patch has no room on the surface",
+                where="reach",
+                value=f"{self.reach:g}",
+                limit=f"above 0 and below {furthest:.4g}, where the surface cuts through itself",
+                advice=f"{0.7 * furthest:.2g}",
+            )
+        if not 0 <= self.cut < self.cells:
+            raise SettingError(
+                "The cut takes more than the corners",
+                where="cut",
+                value=f"{self.cut}",
+                limit=f"0 .. {self.cells - 1}",
+            )
+
+
+Patch = AsymptoticPatch | BisectingPatch | ConjugatePatch | SingularPatch
 
 
 def control_patch(surface: AnalyticSurface, patch: Patch) -> ControlMesh:
@@ -129,8 +187,11 @@ def control_patch(surface: AnalyticSurface, patch: Patch) -> ControlMesh:
     NotHyperbolicError
         Where the Gaussian curvature is not negative, of layouts along asymptotic directions.
     SettingError
-        Where the surface's formula does not reach, or a ring is asked of an open surface.
+        Where the surface's formula does not reach, or a ring is asked of an open surface, or a
+        central singularity of a surface that has none.
     """
+    if isinstance(patch, SingularPatch):
+        return _singular(surface, patch)
     if isinstance(patch, AsymptoticPatch):
         return _asymptotic(surface, patch)
     if isinstance(patch, ConjugatePatch):
@@ -177,6 +238,59 @@ def _conjugate(surface: AnalyticSurface, patch: ConjugatePatch) -> ControlMesh:
     vertices = surface.point(u.ravel(), v.ravel())
     quads = grid_quads(len(u_line) - (not ring), 2 * (across + 1), ring=ring)
     return control_mesh(QuadMesh(vertices, quads))
+
+
+def farthest_reach(valence: int) -> float:
+    """|z| at which Enneper's surface of that valence meets itself in its axis: (2 k + 1)^(1 / 2 k).
+
+    On the circle |z| = r the points nearest to the axis lie at the distance r - r^(2 k + 1) /
+    (2 k + 1) from it, all at one height.
+    """
+    twice = valence - 1  # 2 k + 1
+    return float(twice ** (1.0 / (twice - 1)))
+
+
+def _singular(surface: AnalyticSurface, patch: SingularPatch) -> ControlMesh:
+    """Vertices by sector; the ray between two sectors belongs to the second one."""
+    if not isinstance(surface, Enneper):
+        raise SettingError(
+            "This surface has no family with a central singularity",
+            where="layout",
+            value=f"'singular' on {type(surface).__name__}",
+            limit="Enneper's surface",
+            advice="kind = 'enneper', or remesh a surface that has such a point",
+        )
+    n, sectors = patch.cells, patch.valence
+    s, i, j = (
+        a.ravel()
+        for a in np.meshgrid(np.arange(sectors), np.arange(n), np.arange(n), indexing="ij")
+    )
+
+    def number(i: Indices, j: Indices) -> Indices:
+        ray, along, across = np.where(i == 0, (s + 1) % sectors, s), np.where(i == 0, j, i), j
+        across = np.where(i == 0, 0, across)
+        at = 1 + ray * n * (n + 1) + (along - 1) * (n + 1) + across
+        return np.where((i == 0) & (j == 0), 0, at)
+
+    quads = np.stack([number(i + a, j + b) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1)
+    quads = quads[i + j <= 2 * (n - 1) - patch.cut]
+    along, across = np.meshgrid(np.arange(1, n + 1), np.arange(n + 1), indexing="ij")
+    corner = (along + 1j * across).ravel() / n
+    turns = np.pi / 2.0 * np.arange(sectors)[:, None]
+    size, turn = np.abs(corner), np.angle(corner) + turns
+    power = 4.0 / sectors  # z = w^(2 / (k + 1)) with k + 1 = sectors / 2
+    z = patch.reach * (size**power * np.exp(1j * power * turn)).ravel()
+    vertices = _enneper_of_order(np.r_[0.0, z], sectors // 2 - 1, surface.scale)
+    used, compact = np.unique(quads, return_inverse=True)
+    return as_control_mesh(QuadMesh(vertices[used], compact.reshape(-1, 4)))
+
+
+def _enneper_of_order(z: np.ndarray, order: int, scale: float) -> np.ndarray:
+    """Weierstrass' formula with f = 1 and g = z^order; for order 1 the surface of the package."""
+    high = z ** (2 * order + 1) / (2 * order + 1)
+    middle = 2.0 * z ** (order + 1) / (order + 1)
+    parts = [(z - high).real, -(z + high).imag, middle.real]
+    return scale * np.stack(parts, axis=1)
 
 
 def _full_turn(surface: AnalyticSurface) -> float:

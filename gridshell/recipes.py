@@ -75,7 +75,7 @@ class NetRecipe:
     planarity : eq. 6, eq. 7, or one of their relatives.
     angle : between the diagonals of every control quad (eq. 4), or for ``EDGE_STARS`` between the
         two families of edges: radians, one for all, one per crossing, or a field over positions
-        in mm; None leaves it free.
+        in mm, which is met where the net ends; None leaves it free.
     rhombus : equal diagonals in every quad (eq. 5).
     keep_shape : fairness acts on the change from where the solve begins. False straightens the
         polylines themselves, which suits a noisy start.

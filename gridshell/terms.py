@@ -9,6 +9,7 @@ import numpy as np
 from gridshell.angles import Angle, angles_at, edge_crossings, face_crossings
 from gridshell.arrays import Floats, Indices
 from gridshell.constraints import (
+    FieldAngle,
     NodeAngle,
     Proximity,
     other_stars,
@@ -96,13 +97,19 @@ def planar_stars(control: ControlMesh, planarity: Planarity) -> Stars:
 def angle_terms(
     pose: Pose, planarity: Planarity, angle: Angle | None, *, lag_lengths: bool
 ) -> list[Term]:
-    """The goal of eq. 4 where an angle is asked for."""
+    """The goal of eq. 4 where an angle is asked for; a field is met where the net ends.
+
+    The paper's own formulation, with lengths lagged, takes the field where the net begins.
+    """
     if angle is None:
         return []
-    constraint = NodeAngle(
-        crossings(pose.net, planarity), target_angles(pose.net, planarity, angle), lag_lengths
-    )
-    return [Term("node angle", Weight(1.0), constraint, goal=True)]
+    corners = crossings(pose.net, planarity)
+    goal: Constraint
+    if callable(angle) and not lag_lengths:
+        goal = FieldAngle(corners, lambda x: angles_at(angle, pose.outside(x)))
+    else:
+        goal = NodeAngle(corners, target_angles(pose.net, planarity, angle), lag_lengths)
+    return [Term("node angle", Weight(1.0), goal, goal=True)]
 
 
 def proximity_terms(pose: Pose, weight: Weight) -> list[Term]:

@@ -5,11 +5,13 @@ from gridshell.constraints.across_normal import (
     stars_across_normals,
     white_quads_across_normals,
 )
+from gridshell.constraints.angle_bounds import AngleBounds
 from gridshell.constraints.closeness import Closeness
 from gridshell.constraints.coplanarity import Coplanarity
 from gridshell.constraints.edge_length import EdgeLength
 from gridshell.constraints.equal_diagonals import EqualDiagonals
 from gridshell.constraints.fairness import Fairness, second_differences
+from gridshell.constraints.field_angle import FieldAngle
 from gridshell.constraints.glide import Curve, Glide, smooth_curve
 from gridshell.constraints.node_angle import NodeAngle
 from gridshell.constraints.planar_face import planar_faces, planar_white_faces
@@ -21,12 +23,14 @@ from gridshell.constraints.unit_normal import UnitNormal
 
 __all__ = [
     "AcrossNormal",
+    "AngleBounds",
     "Closeness",
     "Coplanarity",
     "Curve",
     "EdgeLength",
     "EqualDiagonals",
     "Fairness",
+    "FieldAngle",
     "Glide",
     "NodeAngle",
     "Proximity",

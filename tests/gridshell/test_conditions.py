@@ -113,3 +113,41 @@ def test_plates_are_flat_at_a_ragged_rim_too():
 
 def test_a_rim_without_such_a_node_has_nothing_to_flatten(posed):
     assert len(residual(gs.FlatRim().term(posed), posed)) == 0
+
+
+def test_bounds_hold_and_leave_angles_free_between_them(enneper):
+    low, high = np.radians((86.0, 89.0))
+    recipe = gs.a_net(conditions=(gs.AngleBetween(low, high),))
+    control = enneper(14)
+    before = gs.node_angles(control)
+    assert before.max() > high
+    found = gs.optimize(control, recipe, anchor=gs.Free()).require()
+    angles = gs.node_angles(found.control)
+    assert angles.min() > low - 1e-8
+    assert angles.max() < high + 1e-8
+    assert found.quality.star_planarity.max < 1e-8
+
+
+def test_a_net_within_its_bounds_is_left_alone(enneper):
+    exact = gs.optimize(enneper(10), gs.a_net(), anchor=gs.Free()).require().control
+    bounds = gs.AngleBetween(*np.radians((60.0, 120.0)))
+    found = gs.optimize(exact, gs.a_net(conditions=(bounds,)), anchor=gs.Free()).require()
+    assert np.abs(found.control.vertices - exact.vertices).max() < 1e-6 * exact.mesh.mean_edge
+
+
+@pytest.mark.parametrize("bounds", [(90.0, 60.0), (0.0, 90.0), (60.0, 180.0), (np.nan, 90.0)])
+def test_bounds_that_leave_nothing_are_refused(bounds):
+    with pytest.raises(gs.SettingError, match="nothing between") as info:
+        gs.AngleBetween(*np.radians(bounds))
+    assert info.value.where == "angle_between"
+
+
+def test_near_rhombi_bring_diagonals_closer_without_giving_up_the_net(enneper):
+    control = enneper(14)
+    errors = []
+    for conditions in ((), (gs.NearRhombi(),)):
+        recipe = gs.a_net(angle=np.radians(70.0), conditions=conditions)
+        found = gs.optimize(control, recipe, anchor=gs.Free()).require()
+        assert found.quality.angle_error_deg.max < 1e-5
+        errors.append(gs.net_quality(found.control, rhombus=True).rhombus_error.mean)
+    assert errors[1] < 0.9 * errors[0]

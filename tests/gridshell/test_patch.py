@@ -228,3 +228,82 @@ def test_a_conjugate_patch_that_is_none_is_refused_by_its_key(patch, key):
     with pytest.raises(gs.SettingError) as info:
         patch()
     assert info.value.where == key
+
+
+# ---- a central singularity ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("valence", [4, 6, 8])
+def test_sectors_meet_in_a_vertex_of_even_valence(valence):
+    control = gs.control_patch(gs.Enneper(3000.0), gs.SingularPatch(valence, 5, 0.6))
+    mesh = control.mesh
+    inner = ~mesh.on_boundary
+    singular = np.flatnonzero(inner & (mesh.valence != 4))
+    assert len(control.quads) == 25 * valence
+    assert len(singular) == (valence != 4)
+    assert (control.colour[singular] == 0).all()  # D1 holds it
+    assert len(mesh.boundary_loops) == 1
+
+
+def test_the_net_of_fig_13_has_its_numbers():
+    control = gs.control_patch(gs.Enneper(3000.0), gs.SingularPatch(6, 11, 0.8, cut=1))
+    assert (len(control.vertices), len(control.quads)) == (787, 720)
+
+
+def test_valence_four_is_the_regular_patch_of_the_same_surface():
+    reach = 0.6
+    control = gs.control_patch(gs.Enneper(3000.0), gs.SingularPatch(4, 6, reach))
+    line = reach * np.linspace(-1.0, 1.0, 13)
+    u, v = (a.ravel() for a in np.meshgrid(line, line))
+    expected = gs.Enneper(3000.0).point(u, v)
+    gaps = np.linalg.norm(control.vertices[:, None] - expected[None], axis=2)
+    assert len(control.vertices) == len(expected)
+    assert gaps.min(axis=1).max() < 1e-9
+
+
+def test_around_a_singularity_the_net_tends_to_an_asymptotic_one_at_right_angles():
+    errors = []
+    for cells in (8, 16):
+        control = gs.control_patch(gs.Enneper(3000.0), gs.SingularPatch(6, cells, 0.8))
+        quality = gs.net_quality(control, angle=np.pi / 2.0)
+        errors.append((quality.star_planarity.mean, quality.angle_error_deg.mean))
+    assert np.divide(*errors).min() > 2.5
+
+
+@pytest.mark.parametrize(
+    ("patch", "key", "advice"),
+    [
+        ({"valence": 5}, "valence", "6"),
+        ({"valence": 2}, "valence", "4"),
+        ({"reach": 1.6}, "reach", "1"),
+        ({"reach": 0.0}, "reach", "1"),
+        ({"cut": 6}, "cut", None),
+        ({"cells": 1}, "cells", None),
+    ],
+)
+def test_a_singular_patch_that_cannot_be_is_refused(patch, key, advice):
+    with pytest.raises(gs.SettingError) as info:
+        gs.SingularPatch(**{"valence": 6, "cells": 6, "reach": 0.8, **patch})
+    assert info.value.where == key
+    assert info.value.advice == advice
+
+
+def test_a_central_singularity_is_not_asked_of_a_surface_that_has_none():
+    with pytest.raises(gs.SettingError, match="no family") as info:
+        gs.control_patch(HYPAR, gs.SingularPatch(6, 5, 0.6))
+    assert "Hypar" in info.value.value
+
+
+@pytest.mark.parametrize("valence", [4, 6, 8])
+def test_the_surface_meets_itself_in_its_axis_at_the_farthest_reach(valence):
+    """The nearest points of the rim come down to the axis as the reach grows to the limit."""
+    from gridshell.patch import farthest_reach
+
+    limit = farthest_reach(valence)
+    near = []
+    for share in (0.8, 0.9999):
+        control = gs.control_patch(gs.Enneper(1.0), gs.SingularPatch(valence, 12, share * limit))
+        x, y, _ = control.vertices[control.mesh.on_boundary].T
+        near.append(np.hypot(x, y).min())
+    assert near[0] > 0.1
+    assert near[1] < 1e-3

@@ -10,11 +10,13 @@ import gridshell as gs
 from gridshell import constraints
 from gridshell.constraints import (
     AcrossNormal,
+    AngleBounds,
     Closeness,
     Coplanarity,
     EdgeLength,
     EqualDiagonals,
     Fairness,
+    FieldAngle,
     Glide,
     NodeAngle,
     Proximity,
@@ -47,6 +49,10 @@ def in_order(mesh, count):
 CONSTRAINTS = {
     "node angle": lambda m: NodeAngle(m.quads, ANGLE),
     "node angle, lengths lagged": lambda m: NodeAngle(m.quads, ANGLE, lag_lengths=True),
+    "field of node angles": lambda m: FieldAngle(
+        m.quads, lambda p: 1.5 + 0.3 * np.sin(p @ [0.5, -0.2, 0.7])
+    ),
+    "bounds of node angles": lambda m: AngleBounds(m.quads, ANGLE[:24], ANGLE[:24] + 0.3),
     "planar stars of four diagonals": lambda m: regular_stars(gs.diagonal_stars(m)),
     "planar stars of four edges": lambda m: regular_stars(gs.edge_stars(m)),
     "other planar stars of diagonals": lambda m: other_stars(gs.diagonal_stars(m)),

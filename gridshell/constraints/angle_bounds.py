@@ -1,0 +1,48 @@
+"""Bounds of the node angle: the two diagonals of a control quad meet within a range of angles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from gridshell.arrays import Floats, Indices
+from gridshell.constraints.node_angle import NodeAngle
+from gridshell.solve import Evaluation, Pattern
+
+
+@dataclass(frozen=True, eq=False)
+class AngleBounds:
+    """``c - clip(c, cos(highest), cos(lowest)) = 0`` with the cosine c of eq. 4.
+
+    Rows within the bounds are zero and keep their place in the pattern.
+
+    Parameters
+    ----------
+    quads : (m, 4) control quads.
+    lowest, highest : (m,) radians.
+    """
+
+    quads: Indices
+    lowest: Floats
+    highest: Floats
+    _middle: NodeAngle = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        right = np.full(len(self.quads), np.pi / 2.0)
+        object.__setattr__(self, "_middle", NodeAngle(self.quads, right))
+
+    def pattern(self) -> Pattern:
+        """12 columns, one row."""
+        return self._middle.pattern()
+
+    def lag(self, x: Floats) -> None:
+        """Nothing is held still."""
+
+    def evaluate(self, x: Floats, lag: None) -> Evaluation:
+        """How far the cosines are outside, and the derivatives of those that are."""
+        found = self._middle.evaluate(x, None)
+        cosine = found.residual[:, 0] + np.cos(np.pi / 2.0)
+        outside = cosine - np.clip(cosine, np.cos(self.highest), np.cos(self.lowest))
+        active = outside != 0.0
+        return Evaluation(outside[:, None], found.values * active[:, None, None])
