@@ -110,6 +110,8 @@ from .io import (
     write_obj as write_obj,
 )
 from .io import write_state as write_state
+from .mechanism import Mechanism as Mechanism
+from .mechanism import quads_of as quads_of
 from .mesh import (
     CheckerboardPattern as CheckerboardPattern,
 )
@@ -235,6 +237,7 @@ from .remesh import RemeshReport as RemeshReport
 from .remesh import WorkingSurface as WorkingSurface
 from .remesh import quadrangulate as quadrangulate
 from .remesh import working_surface as working_surface
+from .ring_layers import umbrella_of as umbrella_of
 from .solve import End as End
 from .solve import Engine as Engine
 from .solve import Progress as Progress
@@ -293,4 +296,7 @@ from .terms import (
 )
 from .torsion_free import TorsionFreeAxes as TorsionFreeAxes
 from .torsion_free import torsion_free_axes as torsion_free_axes
+from .umbrella import Cable as Cable
+from .umbrella import Position as Position
+from .umbrella import Umbrella as Umbrella
 from .verdict import Verdict as Verdict
