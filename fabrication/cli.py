@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from fabrication.gallery_cli import gallery
 from fabrication.lint_cli import lint
 from fabrication.optimize_cli import optimize
 from fabrication.remesh_cli import remesh
@@ -36,6 +37,7 @@ app = typer.Typer(
 app.command()(remesh)
 app.command()(optimize)
 app.command()(lint)
+app.command()(gallery)
 
 _STAGES = 9
 

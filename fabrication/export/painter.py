@@ -104,23 +104,55 @@ def bounds(layers: Sequence[Layer], view: View) -> Floats:
     return np.stack([flat[:, :2].min(axis=0), flat[:, :2].max(axis=0)])
 
 
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """One polygon, line or dot, ready to be drawn.
+
+    Parameters
+    ----------
+    kind : of its layer.
+    places : (k, 2) right and up, mm; one row for a dot.
+    colour : (3,) sRGB, 0 to 1.
+    size : width of a line, radius of a dot, px; 0 for a polygon.
+    """
+
+    kind: type[Layer]
+    places: Floats
+    colour: Floats
+    size: float
+
+
+def in_order(layers: Sequence[Layer], view: View) -> list[Mark]:
+    """Everything in *layers* from far to near."""
+    ahead = max((_thickness(view, layer) for layer in layers), default=0.0)
+    depths, marks = [], []
+    for layer in layers:
+        placed = view.seen(corners(layer))
+        step = {Faces: 0.0, Lines: 1.0, Dots: 1.5}[type(layer)]
+        depths.append(placed[..., 2].mean(axis=1) + step * ahead)
+        colours = shaded(layer, view) if isinstance(layer, Faces) else layer.colours
+        size = {Faces: 0.0, Lines: getattr(layer, "width", 0.0)}.get(
+            type(layer), getattr(layer, "radius", 0.0)
+        )
+        flat = placed[..., :2]
+        marks += [
+            Mark(type(layer), row, colour, size)
+            for row, colour in zip(flat, np.asarray(colours), strict=True)
+        ]
+    order = np.argsort(np.concatenate([np.zeros(0), *depths]), kind="stable")
+    return [marks[i] for i in order.tolist()]
+
+
 def svg(layers: Sequence[Layer], view: View, frame: Floats, *, label: str) -> str:
     """The layers within *frame* (see `bounds`) as an SVG picture with *label* for the blind."""
     low, high = frame
     scale = (WIDTH - 2.0 * _MARGIN) / max(float(high[0] - low[0]), 1e-9)
     height = (high[1] - low[1]) * scale + 2.0 * _MARGIN
-    ahead = max((_thickness(view, layer) for layer in layers), default=0.0)
-    depths, marks = [], []
-    for layer in layers:
-        placed = view.seen(corners(layer))
-        depth = placed[..., 2].mean(axis=1)
-        step = {Faces: 0.0, Lines: 1.0, Dots: 1.5}[type(layer)]
-        depths.append(depth + step * ahead)
-        x = (placed[..., 0] - low[0]) * scale + _MARGIN
-        y = (high[1] - placed[..., 1]) * scale + _MARGIN
-        marks += _marks(layer, np.stack([x, y], axis=-1), view)
-    order = np.argsort(np.concatenate(depths), kind="stable")
-    body = "\n".join(marks[i] for i in order.tolist())
+    corner, way = np.array([low[0], high[1]]), np.array([scale, -scale])
+    body = "\n".join(
+        _element(mark, np.round((mark.places - corner) * way + _MARGIN, 1))
+        for mark in in_order(layers, view)
+    )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {height:.0f}" role="img" '
         f'aria-label="{label}"><g fill="currentColor" stroke="currentColor" stroke-width="0.5" '
@@ -155,27 +187,17 @@ def _thickness(view: View, layer: Layer) -> float:
     return float(np.percentile(np.ptp(view.seen(layer.corners)[..., 2], axis=1), 95))
 
 
-def _marks(layer: Layer, xy: Floats, view: View) -> list[str]:
-    """One element per face, line or dot at *xy* (m, k, 2), px."""
-    places = np.round(xy, 1)
-    colours = shaded(layer, view) if isinstance(layer, Faces) else layer.colours
-    names = [hexadecimal(colour) for colour in colours]
-    if isinstance(layer, Dots):
-        return [
-            f'<circle cx="{x:g}" cy="{y:g}" r="{layer.radius:g}" color="{name}"/>'
-            for (x, y), name in zip(places[:, 0].tolist(), names, strict=True)
-        ]
-    paths = [
-        "M" + "L".join(f"{x:g} {y:g}" for x, y in dict.fromkeys(map(tuple, row)))
-        for row in places.tolist()
-    ]
-    if isinstance(layer, Lines):
-        width = f'stroke-width="{layer.width:g}"'
-        return [
-            f'<path d="{path}" {width} color="{name}"/>'
-            for path, name in zip(paths, names, strict=True)
-        ]
-    return [f'<path d="{path}Z" color="{name}"/>' for path, name in zip(paths, names, strict=True)]
+def _element(mark: Mark, places: Floats) -> str:
+    """The SVG element of *mark* at *places* (k, 2), px."""
+    name = hexadecimal(mark.colour)
+    if mark.kind is Dots:
+        x, y = places[0].tolist()
+        return f'<circle cx="{x:g}" cy="{y:g}" r="{mark.size:g}" color="{name}"/>'
+    rows = dict.fromkeys(map(tuple, places.tolist()))
+    path = "M" + "L".join(f"{x:g} {y:g}" for x, y in rows)
+    if mark.kind is Lines:
+        return f'<path d="{path}" stroke-width="{mark.size:g}" color="{name}"/>'
+    return f'<path d="{path}Z" color="{name}"/>'
 
 
 def hexadecimal(colour: Floats) -> str:

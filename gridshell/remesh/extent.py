@@ -88,7 +88,9 @@ def cells(found: Extracted, positions: Points, extent: Extent, *, onto: Onto) ->
     if extent is Extent.TRIMMED:
         places = {key: ghosts[i] for i, name in enumerate(names) for key in keys[name]}
         positions = rim.kept_apart(places, positions, onto)
-    return _completed(positions, np.array(ghosts), found.cells, np.array(quads), extent)
+    beyond = np.array(ghosts, dtype=np.float64).reshape(-1, 3)
+    cut = np.array(quads, dtype=np.int64).reshape(-1, 4)
+    return _completed(positions, beyond, found.cells, cut, extent)
 
 
 def _completed(

@@ -120,7 +120,7 @@ def test_a_cable_from_the_base_has_a_dead_point_where_it_is_longest():
 
 
 @pytest.mark.parametrize(
-    ("rings", "advice"), [((2, 5), "rings 2 and 4"), ((4, 2), "rings 4 and 6")]
+    ("rings", "advice"), [((2, 5), "rings 2 and 6"), ((4, 2), "rings 4 and 6")]
 )
 def test_a_cable_joins_nodes_above_each_other(rings, advice):
     with pytest.raises(gs.SettingError, match="above each other") as info:
