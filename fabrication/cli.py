@@ -39,7 +39,7 @@ app.command()(optimize)
 app.command()(lint)
 app.command()(gallery)
 
-_STAGES = 9
+_STAGES = 11
 
 
 def _folder(text: str) -> Path:

@@ -23,7 +23,8 @@ from fabrication.joint_settings import joint_of
 from fabrication.jointed import Jointed
 from fabrication.lamella_sections import FlatSection
 from fabrication.lamella_stock import BarStock, SheetSet, bar_stock, other_sheets, strip_sheets
-from fabrication.lamella_system import LamellaSystem, Plans
+from fabrication.lamella_system import LamellaSystem, Moving, Plans
+from fabrication.motion import motion, motion_findings
 from fabrication.parts import FlatPart, parts_of
 from fabrication.placing import keyed
 from fabrication.routes import Clock
@@ -47,7 +48,9 @@ class LamellaRoute:
 
     @property
     def planarity(self) -> gs.Planarity:
-        """Vertex stars of D1 and D2."""
+        """Vertex stars of D1 and D2; of D1 alone where the net moves and D2 only fills it."""
+        if self.project.umbrella is not None:
+            return gs.Planarity.FIRST_DIAGONAL_STARS
         return gs.Planarity.DIAGONAL_STARS
 
     @property
@@ -64,6 +67,7 @@ class LamellaRoute:
             angle = angle_of(net.angle, folder)
         return gs.a_net(
             angle=angle,
+            planarity=self.planarity,
             conditions=conditions_of(net),
             steps=net.steps,
             tolerance=net.tolerance,
@@ -86,12 +90,15 @@ class LamellaRoute:
             strips = strip_sheets(parts, self.project, profile, bars)
             others = tuple(other_sheets(jointed, self.project, bars, self._coupons(jointed)))
             facade = self._facade(skin, jointed.design)
+        moving = self._moving(control, profile, clock)
+        with clock.stage("checks"):
             stress = bay_stress(jointed.strips, parts)
             findings = (
                 *jointed.findings,
                 *plans.findings,
                 *check(jointed.strips, parts, stress),
                 *self._shop_findings(process, parts, others),
+                *self._motion_findings(moving, profile),
             )
         return LamellaSystem(
             project=self.project,
@@ -103,6 +110,7 @@ class LamellaRoute:
             sheets=(strips, *others),
             facade=facade,
             plans=plans,
+            moving=moving,
             process=process,
             findings=findings,
         )
@@ -123,6 +131,27 @@ class LamellaRoute:
         design = structure(skin, profile, overhang=self.profile.overhang)
         with keyed("joint"):
             return joint_of(self.joint, profile).build(design)
+
+    def _moving(self, control: gs.ControlMesh, profile: Profile, clock: Clock) -> Moving | None:
+        """The motion of the net, where the project asks for it."""
+        section = self.project.motion
+        if section is None:
+            return None
+        with clock.stage("motion"), keyed("motion"):
+            position = gs.umbrella_of(control)
+            found = motion(
+                position,
+                profile,
+                cable=None if section.cable is None else gs.Cable(*section.cable),
+                count=section.positions,
+                limits=(radians(section.smallest), radians(section.largest)),
+            )
+        return Moving(found, position.opening)
+
+    def _motion_findings(self, moving: Moving | None, profile: Profile) -> list[Finding]:
+        if moving is None:
+            return []
+        return motion_findings(moving.motion, moving.opening, profile.material.name)
 
     def _bars(self, whole: Jointed) -> BarStock | None:
         if self.project.bars is None:

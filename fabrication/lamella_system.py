@@ -21,6 +21,7 @@ from fabrication.jointed import Jointed
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.lamella_sections import PapersSection
 from fabrication.lamella_stock import BarStock, SheetSet
+from fabrication.motion import Motion, motion_section
 from fabrication.parts import FlatPart
 from fabrication.placing import keyed
 from fabrication.routes import (
@@ -69,6 +70,30 @@ class Plans:
 
 
 @dataclass(frozen=True, eq=False)
+class Moving:
+    """A net that moves.
+
+    Parameters
+    ----------
+    motion : from one lock to the other.
+    opening : of the position that is built.
+    """
+
+    motion: Motion
+    opening: float
+
+    def write(self, draft: Path, name: str) -> None:
+        """A list, an animation, and a page with a slider."""
+        from fabrication.export.motion_glb import write_motion_glb
+        from fabrication.export.motion_page import write_motion_page
+        from fabrication.export.motion_schedule import write_motion
+
+        write_motion(draft / "motion.csv", self.motion)
+        write_motion_glb(draft / "motion.glb", self.motion)
+        write_motion_page(draft / "motion.html", self.motion, name=name, opening=self.opening)
+
+
+@dataclass(frozen=True, eq=False)
 class LamellaSystem:
     """Strips, their joints, flat parts and stock.
 
@@ -78,6 +103,7 @@ class LamellaSystem:
     stress : of every bay.
     bars : None where strips are cut from sheets.
     sheets : of the strips first, then of connectors, splice plates and coupons.
+    moving : where the net moves.
     process : how the shop cuts, and wants its files.
     """
 
@@ -90,6 +116,7 @@ class LamellaSystem:
     sheets: tuple[SheetSet, ...]
     facade: FacadeSystem | None
     plans: Plans
+    moving: Moving | None
     process: Process
     findings: Sequence[Finding]
 
@@ -137,6 +164,7 @@ class LamellaSystem:
                 "stress": stress_section(self.stress),
                 "stock": self._stock(),
                 **self.plans.sections(),
+                **({} if self.moving is None else {"motion": motion_section(self.moving.motion)}),
                 "closure": closed,
                 "fit": {
                     "clash_mm3": {"max": fitted.max_mm3},
@@ -213,6 +241,8 @@ class LamellaSystem:
             write_assembly(draft / "assembly.csv", self.plans.assembly)
         if self.plans.flat is not None:
             write_flat_state(draft / "flat.csv", self.plans.flat)
+        if self.moving is not None:
+            self.moving.write(draft, self.project.name)
         if self.bars is not None:
             write_bars(draft / "bars.csv", self.bars.plan.bars)
 

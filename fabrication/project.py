@@ -28,6 +28,7 @@ from fabrication.joint_sections import (
     WasherSection,
 )
 from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection, SpliceSection
+from fabrication.motion_sections import MotionSection, UmbrellaSection
 from fabrication.panel_sections import (
     ConnectorSection,
     FacadeSection,
@@ -212,6 +213,8 @@ def _sections() -> dict[str, type[Section]]:
         "layers": LayersSection,
         "splice": SpliceSection,
         "flat": FlatSection,
+        "umbrella": UmbrellaSection,
+        "motion": MotionSection,
         "papers": PapersSection,
         "sheet": SheetSection,
         "own material": MaterialSection,

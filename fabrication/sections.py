@@ -14,6 +14,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from fabrication.angle_sections import AngleChoice, NodeAngle, Point
 from fabrication.joint_sections import JointSection
 from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection
+from fabrication.motion_sections import MotionSection, UmbrellaSection
 from fabrication.panel_sections import (
     BeamsSection,
     ConnectorSection,
@@ -91,6 +92,7 @@ class Project(Section):
     patch: PatchSection | None = None
     remesh: RemeshSection | None = None
     mesh: MeshSection | None = None
+    umbrella: UmbrellaSection | None = None
     net: NetSection
     profile: ProfileSection | None = None
     joint: JointSection | None = None
@@ -98,6 +100,7 @@ class Project(Section):
     shop: ShopSection | None = None
     flat: FlatSection | None = None
     papers: PapersSection | None = None
+    motion: MotionSection | None = None
     facade: FacadeSection | None = None
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None
@@ -108,10 +111,13 @@ class Project(Section):
     panel_sheet: SheetSection | None = None
 
     @property
-    def source(self) -> MeshSection | SurfaceSource | RemeshSource:
+    def source(self) -> MeshSection | SurfaceSource | RemeshSource | UmbrellaSection:
         """Where the net comes from; the validator below makes sure there is exactly one place."""
         surface, patch, remesh, mesh = self.surface, self.patch, self.remesh, self.mesh
-        if mesh is not None:
+        if self.umbrella is not None:
+            if (surface, patch, remesh, mesh) == (None, None, None, None):
+                return self.umbrella
+        elif mesh is not None:
             if (surface, patch, remesh) == (None, None, None):
                 return mesh
         elif isinstance(surface, FileSurface):
@@ -126,7 +132,7 @@ class Project(Section):
             raise ValueError("[remesh] needs a [surface] with a file")
         elif surface is not None and patch is not None:
             return SurfaceSource(surface, patch)
-        raise ValueError("give either [surface] with [patch] or [remesh], or [mesh]")
+        raise ValueError("give one of [surface] with [patch] or [remesh], [mesh], [umbrella]")
 
     @field_validator("surface", mode="before")
     @classmethod
@@ -165,7 +171,9 @@ class Project(Section):
 
 
 _SECTIONS = {
-    "asymptotic": ("profile", "joint", "facade", "bars", "shop", "flat", "papers"),
+    "asymptotic": (
+        *("umbrella", "profile", "joint", "facade", "bars", "shop", "flat", "papers", "motion"),
+    ),
     "planar": ("panels", "supports", "connector", "beams"),
 }
 _NEEDED = {"asymptotic": ("profile", "joint"), "planar": ("panels",)}

@@ -14,6 +14,7 @@ import fabrication.stock as stock
 import gridshell as gs
 from fabrication.errors import ProjectError
 from fabrication.joint_sections import JointSection, SlottedJoint
+from fabrication.motion_sections import UmbrellaSection
 from fabrication.placing import placed
 from fabrication.remesh_settings import require_file, require_remeshable
 from fabrication.section_types import MOST_NODES, MaterialSection
@@ -62,6 +63,17 @@ def patch_of(section: PatchSection) -> gs.Patch:
     return gs.BisectingPatch(section.v, section.cells, section.u)
 
 
+def position_of(section: UmbrellaSection) -> gs.Position:
+    """The position of ``[umbrella]`` that is built.
+
+    Raises
+    ------
+    SettingError
+        When no such umbrella can be built, or it locks before it gets there.
+    """
+    return gs.Umbrella(section.ribs, section.radius, section.bays).position(section.opening)
+
+
 def profile_of(section: ProfileSection) -> stock.Profile:
     """The strip of ``[profile]``."""
     return stock.Profile(section.width, section.thickness, material_of(section.material))
@@ -99,7 +111,10 @@ def require_makeable(project: Project, path: Path) -> None:
     if project.profile is not None and project.joint is not None:
         _require_strips(project.profile, project.joint, sheet, path)
     source = project.source
-    if isinstance(source, MeshSection):
+    if isinstance(source, UmbrellaSection):
+        with placed(path, "umbrella"):
+            position_of(source)
+    elif isinstance(source, MeshSection):
         require_file(source.file, "mesh", path, "mesh.file")
     elif isinstance(source, RemeshSource):
         require_remeshable(source, path, kind=project.net.kind)

@@ -9,10 +9,11 @@ from math import radians
 from pathlib import Path
 
 import gridshell as gs
+from fabrication.motion_sections import UmbrellaSection
 from fabrication.remesh_checks import CONCAVE
 from fabrication.remesh_job import GuideFile, Remeshed, Wish, lay, read_wished
 from fabrication.sections import Project
-from fabrication.settings import patch_of, surface_of
+from fabrication.settings import patch_of, position_of, surface_of
 from fabrication.source_sections import USUAL_QUADS, MeshSection, RemeshSection, RemeshSource
 
 Stage = Callable[[str], AbstractContextManager[None]]
@@ -48,6 +49,10 @@ def start(project: Project, folder: Path, stage: Stage) -> Start:
     source = project.source
     if isinstance(source, RemeshSource):
         return _remeshed(source, folder, stage)
+    if isinstance(source, UmbrellaSection):
+        with stage("start mesh"):
+            control = position_of(source).control()
+            return Start(control, gs.TriangulatedSurface.of_quads(control.vertices, control.quads))
     with stage("start mesh"):
         if isinstance(source, MeshSection):
             return _of_mesh(source, folder, planar=project.net.kind == "planar")
