@@ -70,8 +70,17 @@ def optimize(
     ] = None,
     angle: Annotated[
         str | None,
-        typer.Option(help="Node angle in degrees; 90:60 changes it from the centre outwards."),
+        typer.Option(
+            help="Node angle in degrees; 90:60 changes it from the centre outwards; or a formula "
+            "of x, y, z and r (mm from the origin), as '90 - 30 * r / 4000'."
+        ),
     ] = None,
+    angle_between: Annotated[
+        str | None, typer.Option(help="Bounds of the node angle in degrees, as 60:90.")
+    ] = None,
+    near_rhombi: Annotated[
+        bool, typer.Option("--near-rhombi", help="As near to rhombi as stars and angle allow.")
+    ] = False,
     rhombus: Annotated[bool, typer.Option("--rhombus", help="Equal diagonals (eq. 5).")] = False,
     square: Annotated[bool, typer.Option("--square", help="Rhombi at right angles.")] = False,
     reference: Annotated[
@@ -122,7 +131,10 @@ def optimize(
         mesh=mesh,
         unit=gs.Unit.named(unit),
         planarity=gs.Planarity[_planarity(net, on or _USUAL[net])],
-        angle=_angles(angle),
+        angle=() if _is_formula(angle) else _angles(angle),
+        formula=angle if _is_formula(angle) else None,
+        between=_bounds(angle_between),
+        near_rhombi=near_rhombi,
         rhombus=rhombus,
         square=square,
         reference=reference,
@@ -161,7 +173,26 @@ def _planarity(net: Net, on: On) -> str:
     return _PLANARITIES[net, on]
 
 
-def _angles(text: str | None) -> tuple[float, ...]:
+def _is_formula(text: str | None) -> bool:
+    """Whether the text names a variable: what is no number and no pair of them."""
+    return text is not None and any(name in text for name in "xyzr")
+
+
+def _bounds(text: str | None) -> tuple[float, float] | None:
+    from gridshell.errors import SettingError
+
+    found = _angles(text, "--angle-between")
+    if len(found) == 1:
+        raise SettingError(
+            "Bounds of the node angle are two angles",
+            where="--angle-between",
+            value=repr(text),
+            limit="degrees as in 60:90",
+        )
+    return (found[0], found[1]) if found else None
+
+
+def _angles(text: str | None, option: str = "--angle") -> tuple[float, ...]:
     from gridshell.errors import SettingError
 
     if text is None:
@@ -173,7 +204,7 @@ def _angles(text: str | None) -> tuple[float, ...]:
     if len(values) not in (1, 2) or not all(0.0 < value < 180.0 for value in values):
         raise SettingError(
             "The node angle cannot be used",
-            where="--angle",
+            where=option,
             value=repr(text),
             limit="degrees between 0 and 180, or two of them as in 90:60",
         )

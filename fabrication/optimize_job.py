@@ -31,7 +31,10 @@ class OptimizeJob:
     ----------
     mesh, unit : the input file and the unit of both mesh files.
     planarity : what shall be flat.
-    angle : None leaves it free; two angles make a field from the centre to the outermost quad.
+    angle : none leaves it free; two angles make a field from the centre to the outermost quad.
+    formula : of x, y, z and r in mm, in place of an angle.
+    between : bounds of the angle.
+    near_rhombi : as near to rhombi as stars and angle let the net be.
     rhombus, square : equal diagonals; at right angles.
     reference : surface file in the same unit, or in the one it states itself.
     project : an almost exact net moves as little as it can. False finds a new form.
@@ -46,6 +49,9 @@ class OptimizeJob:
     unit: gs.Unit
     planarity: gs.Planarity
     angle: tuple[float, ...] = ()
+    formula: str | None = None
+    between: tuple[float, float] | None = None
+    near_rhombi: bool = False
     rhombus: bool = False
     square: bool = False
     reference: Path | None = None
@@ -133,7 +139,8 @@ def write_result(result: OptimizeResult, job: OptimizeJob, out: Path, report: Pa
 def _read(job: OptimizeJob) -> gs.ControlMesh:
     mesh = gs.read_obj(job.mesh, unit=job.unit)
     own = job.planarity in (gs.Planarity.EDGE_STARS, gs.Planarity.FACES)
-    if own and not job.angle and not job.rhombus and not job.square:
+    angled = job.angle or job.formula is not None or job.between is not None
+    if own and not angled and not job.rhombus and not job.square:
         return gs.without_families(mesh)
     return gs.as_control_mesh(mesh)
 
@@ -151,7 +158,12 @@ def _recipe(job: OptimizeJob, control: gs.ControlMesh) -> gs.Recipe:
     stop = gs.Stop(job.steps, tolerance, engine=job.engine)
     keep = not job.project
     if job.planarity.of_stars:
-        recipe = gs.a_net(angle=angle, planarity=job.planarity, keep_shape=keep)
+        recipe = gs.a_net(
+            angle=angle,
+            planarity=job.planarity,
+            keep_shape=keep,
+            conditions=_conditions(job),
+        )
         recipe = replace(recipe, rhombus=job.rhombus or job.square)
     elif job.planarity is gs.Planarity.SPHERICAL_STARS:
         recipe = gs.principal_symmetric_net(angle=angle, keep_shape=keep)
@@ -162,11 +174,19 @@ def _recipe(job: OptimizeJob, control: gs.ControlMesh) -> gs.Recipe:
             rhombus=job.rhombus,
             square=job.square,
             keep_shape=keep,
+            conditions=_conditions(job),
         )
     return replace(recipe, stop=stop)
 
 
+def _conditions(job: OptimizeJob) -> tuple[gs.AngleBetween | gs.NearRhombi, ...]:
+    bounds = () if job.between is None else (gs.AngleBetween(*job.between),)
+    return (*bounds, *((gs.NearRhombi(),) if job.near_rhombi else ()))
+
+
 def _angle(job: OptimizeJob, control: gs.ControlMesh) -> gs.Angle | None:
+    if job.formula is not None:
+        return gs.FormulaAngle(job.formula)
     if len(job.angle) < 2:
         return job.angle[0] if job.angle else None
     centres = control.vertices[control.quads].mean(axis=1)

@@ -142,6 +142,47 @@ def test_a_field_of_two_angles(command, mesh, tmp_path):
     assert net["angle_error_deg"]["max"] < 1e-4
 
 
+def test_a_formula_is_met_where_the_net_ends(command, mesh, tmp_path):
+    mesh(saddle, 12, 12)
+    options = ("--mode", "form", "--angle", "85 + z / 100", "-o", "o.obj", "--report", "r.json")
+    code, _, _ = command("in.obj", "--unit", "m", *options)
+    assert code == 0
+    found = gs.as_control_mesh(gs.read_obj(tmp_path / "o.obj", unit=gs.Unit.M))
+    middle = found.vertices[found.quads].mean(axis=1)
+    wanted = 85.0 + middle[:, 2] / 100.0
+    angles = np.degrees(gs.node_angles(found))
+    off = np.minimum(np.abs(angles - wanted), np.abs(180.0 - angles - wanted))
+    assert off.max() < 1e-4
+
+
+def test_bounds_and_near_rhombi(command, mesh, tmp_path):
+    mesh(saddle, 12, 12)
+    options = ("--angle-between", "84:88", "--near-rhombi", "-o", "o.obj", "--report", "r.json")
+    code, _, _ = command("in.obj", "--unit", "m", "--mode", "form", *options)
+    net = json.loads((tmp_path / "r.json").read_text())["net"]
+    assert code == 0
+    assert 84.0 - 1e-5 < net["node_angle_deg"]["min"] < net["node_angle_deg"]["max"] < 88.0 + 1e-5
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--angle", "90 + q * x", "'q'"),
+        ("--angle", "90 + x +", "does not parse"),
+        ("--angle", "x * 1e6", "range of node angles"),
+        ("--angle-between", "60", "two angles"),
+        ("--angle-between", "90:60", "nothing between"),
+        ("--angle-between", "a:b", "cannot be used"),
+    ],
+)
+def test_angles_that_cannot_be_used_end_with_2(command, mesh, tmp_path, option, value, told):
+    mesh(saddle)
+    code, _, err = command("in.obj", "--unit", "m", option, value, "-o", "o.obj")
+    assert code == 2
+    assert told in err
+    assert not (tmp_path / "o.obj").exists()
+
+
 def test_a_net_that_is_not_there_ends_with_1_and_says_why(command, mesh, tmp_path):
     mesh(saddle)
     options = ("--angle", "30", "--anchor", "boundary-pinned", "-o", "o.obj", "--report", "r.json")
