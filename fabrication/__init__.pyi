@@ -21,6 +21,7 @@ from .connector import connectors as connectors
 from .connector_pieces import StarSpec as StarSpec
 from .coupon import Coupon as Coupon
 from .coupon import coupon as coupon
+from .cut import Drill as Drill
 from .cut import Relief as Relief
 from .cutting_stock import cut_bars as cut_bars
 from .export.assembly_schedule import write_assembly as write_assembly
@@ -62,6 +63,7 @@ from .joints import JOINTS as JOINTS
 from .joints import AnglePlay as AnglePlay
 from .joints import Cleat as Cleat
 from .joints import DoubleSlotJoint as DoubleSlotJoint
+from .joints import HingedJoint as HingedJoint
 from .joints import Joint as Joint
 from .joints import ReciprocalJoint as ReciprocalJoint
 from .joints import ScissorJoint as ScissorJoint
@@ -123,6 +125,7 @@ from .splice_plate import SplicePlate as SplicePlate
 from .splices import runs_of as runs_of
 from .splices import splice_plates as splice_plates
 from .splices import spliced as spliced
+from .stock import HollowProfile as HollowProfile
 from .stock import (
     Profile as Profile,
 )

@@ -165,12 +165,35 @@ class Hole:
 
 
 @dataclass(frozen=True)
+class Drill:
+    """A round hole through both narrow walls of a hollow section, from its upper edge down.
+
+    Parameters
+    ----------
+    x : of its axis, half-way through the thickness, mm from the cut end.
+    diameter : mm.
+    node : name of the node.
+    purpose : what goes through, for lists and drawings: "pin M6".
+    """
+
+    x: float
+    diameter: float
+    node: str
+    purpose: str
+
+    @property
+    def area(self) -> float:
+        """Mm2."""
+        return float(np.pi) * self.diameter**2 / 4.0
+
+
+@dataclass(frozen=True)
 class Cuts:
     """All cuts of one strip.
 
     Parameters
     ----------
-    slots, holes : in order along the strip.
+    slots, holes, drills : in order along the strip.
     bevels : at its start and at its end, how much longer the near face (+b) is than the far one,
         mm along the strip; negative where it is shorter. The outline is the longer of both.
     """
@@ -178,6 +201,7 @@ class Cuts:
     slots: tuple[Slot, ...] = ()
     holes: tuple[Hole, ...] = ()
     bevels: tuple[float, float] = (0.0, 0.0)
+    drills: tuple[Drill, ...] = ()
 
 
 def outline(length: float, width: float, slots: Sequence[Slot]) -> Floats:

@@ -112,7 +112,21 @@ class StudJointSection(Section):
     blocks: Annotated[BlocksSection | None, Field(description="no shear blocks")] = None
 
 
+class HingedSection(Section):
+    """Hollow sections on two levels, a pin in every node (Fig. 18)."""
+
+    kind: Literal["hinged"]
+    pin: Size
+    gap: Size = 4.0
+    play: Distance = 0.3
+
+
 JointSection = Annotated[
-    SlotSection | ScissorSection | ReciprocalSection | StudJointSection | DoubleSlotSection,
+    SlotSection
+    | ScissorSection
+    | ReciprocalSection
+    | StudJointSection
+    | DoubleSlotSection
+    | HingedSection,
     Field(discriminator="kind"),
 ]

@@ -11,6 +11,7 @@ from fabrication.joint_sections import (
     BlocksSection,
     CleatSection,
     DoubleSlotSection,
+    HingedSection,
     JointSection,
     ReciprocalSection,
     ScissorSection,
@@ -20,6 +21,7 @@ from fabrication.joint_sections import (
 from fabrication.joints import (
     Cleat,
     DoubleSlotJoint,
+    HingedJoint,
     Joint,
     ReciprocalJoint,
     ScissorJoint,
@@ -69,6 +71,10 @@ def _double_slot(section: DoubleSlotSection, profile: stock.Profile) -> Joint:
     return DoubleSlotJoint(
         section.spacing, section.bolt, star, section.clearance, section.depth_clearance
     )
+
+
+def _hinged(section: HingedSection, _: stock.Profile) -> Joint:
+    return HingedJoint(section.pin, section.gap, section.play)
 
 
 def _reciprocal(section: ReciprocalSection, profile: stock.Profile) -> Joint:
@@ -125,4 +131,5 @@ _MAKERS: dict[str, Callable[[Any, stock.Profile], Joint]] = {
     "reciprocal": _reciprocal,
     "two-level": _stud,
     "double-slot": _double_slot,
+    "hinged": _hinged,
 }

@@ -22,6 +22,7 @@ class Feature(Enum):
 
     SLOT = "slot"
     HOLE = "hole"
+    DRILL = "drill"
     START = "start"
     END = "end"
 

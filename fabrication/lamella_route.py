@@ -21,6 +21,7 @@ from fabrication.flat_state import FlatState, lay_flat
 from fabrication.joint_sections import JointSection, SlottedJoint
 from fabrication.joint_settings import joint_of
 from fabrication.jointed import Jointed
+from fabrication.joints import HingedJoint
 from fabrication.lamella_sections import FlatSection
 from fabrication.lamella_stock import BarStock, SheetSet, bar_stock, other_sheets, strip_sheets
 from fabrication.lamella_system import LamellaSystem, Moving, Plans
@@ -36,6 +37,9 @@ from fabrication.shop_settings import process_of
 from fabrication.stock import Profile
 from fabrication.strength import bay_stress
 from fabrication.structures import Structure, structure
+
+_SHARPEST = 10.0
+"""Node angle down to which a net moves where its joints say nothing, degrees."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +94,7 @@ class LamellaRoute:
             strips = strip_sheets(parts, self.project, profile, bars)
             others = tuple(other_sheets(jointed, self.project, bars, self._coupons(jointed)))
             facade = self._facade(skin, jointed.design)
-        moving = self._moving(control, profile, clock)
+        moving = self._moving(control, jointed.design, clock)
         with clock.stage("checks"):
             stress = bay_stress(jointed.strips, parts)
             findings = (
@@ -132,19 +136,23 @@ class LamellaRoute:
         with keyed("joint"):
             return joint_of(self.joint, profile).build(design)
 
-    def _moving(self, control: gs.ControlMesh, profile: Profile, clock: Clock) -> Moving | None:
+    def _moving(self, control: gs.ControlMesh, design: Structure, clock: Clock) -> Moving | None:
         """The motion of the net, where the project asks for it."""
         section = self.project.motion
         if section is None:
             return None
         with clock.stage("motion"), keyed("motion"):
             position = gs.umbrella_of(control)
+            joint = joint_of(self.joint, design.profile)
+            smallest = radians(section.smallest or _SHARPEST)
+            if section.smallest is None and isinstance(joint, HingedJoint):
+                smallest = joint.folded(design)
             found = motion(
                 position,
-                profile,
+                design.profile,
                 cable=None if section.cable is None else gs.Cable(*section.cable),
                 count=section.positions,
-                limits=(radians(section.smallest), radians(section.largest)),
+                limits=(smallest, radians(section.largest)),
             )
         return Moving(found, position.opening)
 

@@ -230,12 +230,14 @@ class LamellaSystem:
         from fabrication.export.bar_schedule import write_bars
         from fabrication.export.bay_schedule import write_bay_schedule
         from fabrication.export.flat_schedule import write_flat_state
-        from fabrication.export.schedule import write_bill, write_schedule
+        from fabrication.export.schedule import write_bill, write_drillings, write_schedule
 
         material = self.jointed.design.profile.material
         lines = [] if self.facade is None else self.facade.lines()
         write_schedule(draft / "parts.csv", self.parts, self.sheets[0].sheets, material, lines)
         write_bill(draft / "bill.csv", self.jointed.bill)
+        if any(part.drills for part in self.parts):
+            write_drillings(draft / "drillings.csv", self.parts)
         write_bay_schedule(draft / "bays.csv", self.stress)
         if self.plans.assembly.steps:
             write_assembly(draft / "assembly.csv", self.plans.assembly)

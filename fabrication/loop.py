@@ -23,7 +23,7 @@ from fabrication.export.step_loops import landmarks
 from fabrication.export.step_prism_reader import StepPrism, read_prisms
 from fabrication.export.step_reader import StepPart, read_step
 from fabrication.jointed import Feature, Fixture, Jointed
-from fabrication.parts import FlatPart
+from fabrication.parts import FlatPart, hollow_area
 from fabrication.shapes import Prisms
 from gridshell import FileError
 from gridshell.arrays import Floats
@@ -125,7 +125,7 @@ def compare(
         volume_ppm=float(ppm),
         strips=len(parts),
         slots=count[Feature.SLOT],
-        holes=count[Feature.HOLE],
+        holes=count[Feature.HOLE] + count[Feature.DRILL],
         ends=count[Feature.START] + count[Feature.END],
         connectors=len(apart),
     )
@@ -147,6 +147,10 @@ def slot_centres(outline: Floats) -> Floats:
 
 
 def _flat_volume(drawn: DxfPart, part: FlatPart) -> float:
+    if part.wall:
+        length = float(np.ptp(drawn.outline[:, 0]))
+        drilled = 2.0 * part.wall * sum(drill.area for drill in part.drills)
+        return length * hollow_area(part.width, part.thickness, part.wall) - drilled
     holes = float((np.pi / 4.0 * drawn.circles[:, 2] ** 2).sum())
     bevelled = sum(abs(run) for run in part.bevels) * part.width / 2.0
     return (area(drawn.outline) - holes - bevelled) * part.thickness
@@ -192,7 +196,7 @@ def _fixture_distances(
     """How far every fixture of a strip is from where the files put it, mm."""
     if not fixtures:
         return
-    x, y = _places(fixtures, drawn, part)
+    x, y = _places(fixtures, drawn, solid, part)
     middle = solid.place(x, y)
     wanted = np.array([f.position for f in fixtures])
     off = np.linalg.norm(middle - wanted, axis=1)
@@ -205,8 +209,13 @@ def _fixture_distances(
     yield from zip(fixtures, off.tolist(), strict=True)
 
 
-def _places(fixtures: Sequence[Fixture], drawn: DxfPart, part: FlatPart) -> tuple[Floats, Floats]:
-    """Where the flat part has the features of *fixtures*: x and y, (n,) each, mm."""
+def _places(
+    fixtures: Sequence[Fixture], drawn: DxfPart, solid: StepPart, part: FlatPart
+) -> tuple[Floats, Floats]:
+    """Where the flat part has the features of *fixtures*: x and y, (n,) each, mm.
+
+    What is drilled through narrow walls is no hole on the sheet: its place is the solid's own.
+    """
     place = np.array([[f.x, part.width / 2.0] for f in fixtures])
     last = float(drawn.outline[:, 0].max())
     slots = [i for i, f in enumerate(fixtures) if f.feature is Feature.SLOT]
@@ -222,6 +231,13 @@ def _places(fixtures: Sequence[Fixture], drawn: DxfPart, part: FlatPart) -> tupl
         wanted = [fixtures[i].x, fixtures[i].y]
         nearest = np.linalg.norm(drawn.circles[:, :2] - wanted, axis=1).argmin()
         place[i] = drawn.circles[nearest, :2]
+    drills = [i for i, f in enumerate(fixtures) if f.feature is Feature.DRILL]
+    drilled = solid.drills()
+    if len(drilled) != len(drills):
+        raise _other_number("drillings", drawn.mark, len(drilled), len(drills))
+    in_order = sorted(drills, key=lambda i: fixtures[i].x)
+    for i, x in zip(in_order, drilled[:, 0].tolist(), strict=True):
+        place[i, 0] = x
     for i, fixture in enumerate(fixtures):
         if fixture.feature is Feature.START:
             place[i, 0] = abs(part.bevels[0]) / 2.0

@@ -26,5 +26,7 @@ class MotionSection(Section):
     cable: Annotated[
         tuple[Whole, Whole] | None, Field(description="from the base ring to the highest above it")
     ] = None
-    smallest: NodeAngle = 10.0
+    smallest: Annotated[
+        NodeAngle | None, Field(description="what hinges let be, 10 degrees without")
+    ] = None
     largest: NodeAngle = 170.0

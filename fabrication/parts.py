@@ -8,9 +8,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from fabrication.cut import SQUARE, Edge, Hole, Relief, Slot, area, face_outlines, outline
+from fabrication.cut import (
+    SQUARE,
+    Cuts,
+    Drill,
+    Edge,
+    Hole,
+    Relief,
+    Slot,
+    area,
+    face_outlines,
+    outline,
+)
 from fabrication.jointed import Jointed
 from fabrication.joints import Joint
+from fabrication.stock import wall_of
 from fabrication.structures import Structure
 from fabrication.unroll import Development, unroll
 from gridshell import SettingError
@@ -49,6 +61,8 @@ class FlatPart:
     development : where it came from.
     holes : in order along the strip.
     bevels : how much longer the near face is than the far one at either end, see ``Cuts``, mm.
+    wall : of a hollow section, mm; 0 for a solid strip.
+    drills : through the narrow walls of a hollow section, in order along it.
     """
 
     mark: str
@@ -60,6 +74,8 @@ class FlatPart:
     development: Development
     holes: tuple[Hole, ...] = ()
     bevels: tuple[float, float] = (0.0, 0.0)
+    wall: float = 0.0
+    drills: tuple[Drill, ...] = ()
 
     @property
     def length(self) -> float:
@@ -84,8 +100,16 @@ class FlatPart:
     @property
     def volume(self) -> float:
         """Of the finished strip, mm3."""
+        if self.wall:
+            drilled = 2.0 * self.wall * sum(drill.area for drill in self.drills)
+            return self.length * hollow_area(self.width, self.thickness, self.wall) - drilled
         bevelled = sum(abs(run) for run in self.bevels) * self.width / 2.0
         return (self.area - bevelled) * self.thickness
+
+
+def hollow_area(width: float, thickness: float, wall: float) -> float:
+    """Section of a tube, mm2."""
+    return width * thickness - (width - 2.0 * wall) * (thickness - 2.0 * wall)
 
 
 def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
@@ -103,9 +127,10 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
     Raises
     ------
     SettingError
-        When slots run into each other or out of the strip.
+        When slots run into each other or out of the strip, or a tube is slotted.
     """
     profile = jointed.strips.profile
+    wall = wall_of(profile)
     width, thickness = profile.width, profile.thickness
     parts = []
     passing = uncut_nodes(jointed)
@@ -113,6 +138,7 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
         cuts = jointed.cuts[lamella.mark]
         slots = tuple(replace(slot, relief=relief) for slot in cuts.slots)
         _require_room(lamella.mark, slots, lamella.length)
+        _require_whole(lamella.mark, cuts, wall)
         developed = unroll(lamella, width)
         parts.append(
             FlatPart(
@@ -128,6 +154,8 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
                 development=developed,
                 holes=cuts.holes,
                 bevels=cuts.bevels,
+                wall=wall,
+                drills=cuts.drills,
             )
         )
     return tuple(parts)
@@ -165,6 +193,19 @@ def _require_room(mark: str, slots: Sequence[Slot], length: float) -> None:
                 limit="> 0",
                 advice="fewer lamellas, a thinner strip, or a longer overhang",
             )
+
+
+def _require_whole(mark: str, cuts: Cuts, wall: float) -> None:
+    """Refuse what cannot be cut: slots and side holes of tubes, drills through solid strips."""
+    across = [*cuts.slots, *cuts.holes] if wall else list(cuts.drills)
+    if across or (wall and cuts.bevels != (0.0, 0.0)):
+        raise SettingError(
+            "This joint does not go with the section of the strips",
+            where=mark,
+            value="a hollow section" if wall else "a solid strip",
+            limit="hinges for hollow sections, all other joints for solid strips",
+            advice="kind = 'hinged' with a wall, or no wall",
+        )
 
 
 def _labels(

@@ -71,6 +71,7 @@ class ProfileSection(Section):
 
     width: Size
     thickness: Size
+    wall: Annotated[Size | None, Field(description="a solid strip")] = None
     material: SheetMetal
     overhang: Annotated[Size | None, Field(description="half the width")] = None
 
@@ -132,7 +133,7 @@ class Project(Section):
             raise ValueError("[remesh] needs a [surface] with a file")
         elif surface is not None and patch is not None:
             return SurfaceSource(surface, patch)
-        raise ValueError("give one of [surface] with [patch] or [remesh], [mesh], [umbrella]")
+        raise ValueError("give either [surface] with [patch] or [remesh], or [mesh], or [umbrella]")
 
     @field_validator("surface", mode="before")
     @classmethod
@@ -187,6 +188,10 @@ def _foreign(project: Project) -> Iterator[InitErrorDetails]:
     for name in _SECTIONS[other]:
         if getattr(project, name) is not None:
             yield _mistake((name,), f"net.kind = '{kind}'", f"net.kind = '{other}' only")
+    hinged = project.joint is not None and project.joint.kind == "hinged"
+    if project.profile is not None and project.profile.wall is not None and not hinged:
+        named = "no joint" if project.joint is None else f"joint.kind = '{project.joint.kind}'"
+        yield _mistake(("profile", "wall"), named, "joint.kind = 'hinged' only")
     if project.panel_sheet is not None and project.panels is None and project.facade is None:
         yield _mistake(("panel_sheet",), "no panels", "projects with [panels] or [facade]")
     if project.connector is not None and project.supports is None:
@@ -213,6 +218,9 @@ def _missing(project: Project) -> Iterator[InitErrorDetails]:
     for name in _NEEDED[kind]:
         if getattr(project, name) is None:
             yield InitErrorDetails(type="missing", loc=(name,), input=None)
+    hinged = project.joint is not None and project.joint.kind == "hinged"
+    if hinged and project.profile is not None and project.profile.wall is None:
+        yield InitErrorDetails(type="missing", loc=("profile", "wall"), input=None)
     if project.net.anchor == "supports" and project.net.supports is None:
         yield InitErrorDetails(type="missing", loc=("net", "supports"), input=None)
     if project.mesh is not None and project.mesh.along is None:

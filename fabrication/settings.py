@@ -76,7 +76,10 @@ def position_of(section: UmbrellaSection) -> gs.Position:
 
 def profile_of(section: ProfileSection) -> stock.Profile:
     """The strip of ``[profile]``."""
-    return stock.Profile(section.width, section.thickness, material_of(section.material))
+    material = material_of(section.material)
+    if section.wall is not None:
+        return stock.HollowProfile(section.width, section.thickness, material, section.wall)
+    return stock.Profile(section.width, section.thickness, material)
 
 
 def material_of(chosen: str | MaterialSection) -> stock.Material:

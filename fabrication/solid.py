@@ -13,6 +13,8 @@ from fabrication.sides import strip_sides
 from fabrication.strip_brep import strip_brep
 from fabrication.strip_loops import strip_loops
 from fabrication.structures import Structure
+from fabrication.tube_brep import tube_brep
+from fabrication.tube_sides import tube_sides
 
 try:
     import build123d
@@ -65,8 +67,7 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
         When the kernel does not find it valid.
     """
     try:
-        sides = strip_sides(lamella, part)
-        solid = strip_brep(sides, part.thickness, strip_loops(part))
+        solid = _made(lamella, part)
     except KERNEL_ERRORS as error:
         raise KernelError(
             "The kernel cannot make a lamella's solid", where=lamella.mark, value=str(error)
@@ -78,6 +79,12 @@ def lamella_solid(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
             advice="look at what check(structure, parts) finds of its slots",
         )
     return solid
+
+
+def _made(lamella: Lamella, part: FlatPart) -> TopoDS_Solid:
+    if part.wall:
+        return tube_brep(tube_sides(lamella, part), part.length, part.drills)
+    return strip_brep(strip_sides(lamella, part), part.thickness, strip_loops(part))
 
 
 def volume(shape: Any) -> float:

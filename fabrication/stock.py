@@ -38,6 +38,11 @@ class Profile:
     thickness: float
     material: Material
 
+    @property
+    def size(self) -> str:
+        """Width by thickness, mm: "100 x 2.5"."""
+        return f"{self.width:g} x {self.thickness:g}"
+
     def __post_init__(self) -> None:
         require_positive("width", self.width)
         require_positive("thickness", self.thickness)
@@ -49,6 +54,54 @@ class Profile:
                 limit=f"at most a third of the width, {self.width / 3.0:g} mm",
                 advice="a thinner strip, or a wider one",
             )
+
+
+@dataclass(frozen=True)
+class HollowProfile(Profile):
+    """A rectangular hollow section: a tube that bends and twists as a strip does.
+
+    Parameters
+    ----------
+    width, thickness : its outer sizes, as of a strip: along the surface normal and across, mm.
+    wall : of all four walls, mm.
+
+    Raises
+    ------
+    SettingError
+        For a size that is not positive, a tube thicker than wide, or walls that fill it.
+    """
+
+    wall: float
+
+    @property
+    def size(self) -> str:
+        """Width by thickness by wall, mm: "40 x 14 x 2"."""
+        return f"{super().size} x {self.wall:g}"
+
+    def __post_init__(self) -> None:
+        for key in ("width", "thickness", "wall"):
+            require_positive(key, getattr(self, key))
+        if self.thickness > self.width:
+            raise SettingError(
+                "A hollow section stands upright on the surface",
+                where="thickness",
+                value=f"{self.thickness:g} mm",
+                limit=f"at most the width, {self.width:g} mm",
+                advice="width and thickness the other way round",
+            )
+        if not 2.0 * self.wall < self.thickness:
+            raise SettingError(
+                "The walls leave no room inside",
+                where="wall",
+                value=f"{self.wall:g} mm",
+                limit=f"below half the thickness, {self.thickness / 2.0:g} mm",
+                advice=f"{self.thickness / 8.0:.2g} mm",
+            )
+
+
+def wall_of(profile: Profile) -> float:
+    """Wall of a hollow section, mm; 0 for a solid strip."""
+    return profile.wall if isinstance(profile, HollowProfile) else 0.0
 
 
 def require_web(profile: Profile, depth_clearance: float) -> None:

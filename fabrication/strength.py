@@ -14,6 +14,10 @@ The sum along the strip is largest at the edge that both kn and w stretch: with 
 at z = h / 2, c = E (|kn| h / 2 + w^2 h^2 / 12) bounds them over the whole width. Bending and shear
 grow with t and c does not, so the largest thickness that passes solves a quadratic.
 
+A rectangular tube with the wall w carries twist as a closed ring (Bredt): with the area Am and the
+length pm of the wall's middle line the shear is G w' 2 Am / pm for a rate w'. A fibre at the
+distance r from its axis carries E w'^2 / 2 (r^2 - ip^2), with ip the polar radius of gyration.
+
 What is imposed is the shape, so a notch changes none of this but where stresses flow around it;
 the net sections at the slots are for those who check loads. Lengths mm, stresses N/mm2.
 """
@@ -30,6 +34,7 @@ from fabrication.lamella import Lamella
 from fabrication.materials import Material
 from fabrication.net_sections import net_sections
 from fabrication.parts import FlatPart
+from fabrication.stock import Profile, wall_of
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, Indices
 
@@ -183,6 +188,7 @@ def _in_bays(lamella: Lamella, bays: Floats, structure: Structure) -> dict[str, 
         width=profile.width,
         thickness=profile.thickness,
         material=profile.material,
+        wall=wall_of(profile),
     )
     return {
         key: values.min(axis=1) if key in _SMALLEST else values.max(axis=1)
@@ -198,15 +204,27 @@ def section_stress(
     width: float,
     thickness: float,
     material: Material,
+    wall: float = 0.0,
 ) -> dict[str, Floats]:
-    """Figures of :class:`BayStress` at places with given rates, all >= 0 and of one shape, 1/mm."""
+    """Figures of :class:`BayStress` at places with given rates, all >= 0 and of one shape, 1/mm.
+
+    Parameters
+    ----------
+    wall : of a hollow section, mm; 0 for a solid strip.
+    """
     e, g, f = material.modulus, material.rigidity, material.strength
     bending = e * thickness * weak / 2.0
-    shear = g * thickness * twist
     edgewise = e * strong * width / 2.0
-    helix = e * (twist * width) ** 2 / 12.0
+    if wall:
+        lever, corner, face = _hollow(width, thickness, wall)
+        shear = g * twist * lever
+        helix, pressed = (e * twist**2 / 2.0 * share for share in (corner, face))
+    else:
+        shear = g * thickness * twist
+        helix = e * (twist * width) ** 2 / 12.0
+        pressed = helix / 2.0
     along = bending + edgewise + helix
-    mid = bending + helix / 2.0
+    mid = bending + pressed
     ratio = f / material.shear_limit
     with np.errstate(divide="ignore"):
         radius = 1.0 / np.where(weak > _STRAIGHT, weak, 0.0)
@@ -218,15 +236,35 @@ def section_stress(
         "shear": shear,
         "edgewise": edgewise,
         "helix_edge": helix,
-        "helix_mid": helix / 2.0,
+        "helix_mid": pressed,
         "von_mises_mid": np.sqrt(mid**2 + 3.0 * shear**2),
         "von_mises_edge": np.sqrt(along**2 + 3.0 * shear**2),
         "utilisation": np.hypot(along, ratio * shear) / f,
         "thickest": _thickest(bending / thickness, ratio * shear / thickness, edgewise + helix, f),
         "widest": _widest(
-            e * strong / 2.0, e * twist**2 / 12.0, _left(f, ratio * shear, bending), width
+            e * strong / 2.0, helix / width**2, _left(f, ratio * shear, bending), width
         ),
     }
+
+
+def twist_lever(profile: Profile) -> float:
+    """Shear of a section over shear modulus and rate of twist: the thickness of a strip, mm."""
+    wall = wall_of(profile)
+    if not wall:
+        return profile.thickness
+    return _hollow(profile.width, profile.thickness, wall)[0]
+
+
+def _hollow(width: float, thickness: float, wall: float) -> tuple[float, float, float]:
+    """Of a tube: shear over G times twist, mm, and how much further from the axis, squared, a
+    corner is than the radius of gyration, and how much nearer the middle of a wide wall, mm2.
+    """
+    high, deep = width - 2.0 * wall, thickness - 2.0 * wall
+    section = width * thickness - high * deep
+    moments = width * thickness * (width**2 + thickness**2) - high * deep * (high**2 + deep**2)
+    gyration = moments / 12.0 / section
+    lever = (width - wall) * (thickness - wall) / (width + thickness - 2.0 * wall)
+    return lever, (width**2 + thickness**2) / 4.0 - gyration, gyration - thickness**2 / 4.0
 
 
 def _thickest(bending: Floats, shear: Floats, fixed: Floats, strength: float) -> Floats:

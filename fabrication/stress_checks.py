@@ -21,7 +21,7 @@ import numpy as np
 
 from fabrication.finding import Finding, Severity
 from fabrication.stock import Profile
-from fabrication.strength import NOT_CHECKED, BayStress
+from fabrication.strength import NOT_CHECKED, BayStress, twist_lever
 from fabrication.structures import Structure
 from gridshell.arrays import Indices
 
@@ -97,7 +97,7 @@ def _bend_radius(
 def _twist(mark: str, stress: BayStress, bays: Indices, profile: Profile) -> Iterator[Finding]:
     bay = int(bays[np.argmax(stress.twist[bays])])
     material, rate = profile.material, float(stress.twist[bay])
-    fastest = material.shear_limit / (material.rigidity * profile.thickness)
+    fastest = material.shear_limit / (material.rigidity * twist_lever(profile))
     if rate > fastest:
         yield Finding(
             "twist",

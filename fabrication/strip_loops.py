@@ -156,9 +156,9 @@ def arc_images(sides: Sequence[Side], arcs: Sequence[Piece]) -> ArcImages:
     spline = make_interp_spline(share, columns, k=DEGREE)
     between = (share[1:] + share[:-1]) / 2.0
     wanted = np.stack([_on_side(side, arcs, between) for side in sides], axis=1)
-    found = np.moveaxis(spline(between).reshape(len(between), len(arcs), 2, 3), 0, 2)
+    found = np.moveaxis(spline(between).reshape(len(between), len(arcs), len(sides), 3), 0, 2)
     off = float(np.linalg.norm(found - wanted, axis=3).max(initial=0.0))
-    poles = np.moveaxis(np.asarray(spline.c).reshape(-1, len(arcs), 2, 3), 0, 2)
+    poles = np.moveaxis(np.asarray(spline.c).reshape(-1, len(arcs), len(sides), 3), 0, 2)
     return ArcImages(np.asarray(spline.t), poles, off)
 
 

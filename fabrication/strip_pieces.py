@@ -7,7 +7,7 @@ own map. The map is straight along the height, so only the length needs slices.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import manifold3d
@@ -23,6 +23,9 @@ _STEP = 3.0
 
 _SLICES = 4
 """Cells beside a slot on either side, and in the slot."""
+
+_BEYOND = 1.0
+"""How much longer a tube's cavity is than the piece it is taken from, mm."""
 
 _ROUND = 64
 """Straight sides of a drill."""
@@ -63,6 +66,8 @@ def strip_pieces(
                 tri_verts=lattice.triangles.astype(np.uint64),
             )
         )
+        if part.wall:
+            solid = _hollowed(lamella, part, lattice, solid)
         drills = [
             _drill(lamella, part, hole.x, hole.y, hole.diameter)
             for hole in part.holes
@@ -72,6 +77,35 @@ def strip_pieces(
             solid = manifold3d.Manifold.batch_boolean([solid, *drills], manifold3d.OpType.Subtract)
         nodes = frozenset(s.node for s in part.slots if lattice.low < s.x < lattice.high)
         yield StripPiece(solid, nodes)
+
+
+def _hollowed(
+    lamella: Lamella, part: FlatPart, lattice: _Lattice, solid: manifold3d.Manifold
+) -> manifold3d.Manifold:
+    """A length of a tube: its cavity and the holes through its narrow walls taken away."""
+    inside = replace(
+        part, thickness=part.thickness - 2.0 * part.wall, width=part.width - 2.0 * part.wall
+    )
+    core = _Lattice.of(inside, (lattice.low - _BEYOND, lattice.high + _BEYOND))
+    x, y, up = core.points.T
+    placed = lamella.place(x + lamella.start, y, up - inside.width / 2.0)
+    tools = [
+        manifold3d.Manifold(
+            manifold3d.Mesh64(
+                vert_properties=np.ascontiguousarray(placed),
+                tri_verts=core.triangles.astype(np.uint64),
+            )
+        )
+    ]
+    for drill in part.drills:
+        if lattice.low < drill.x < lattice.high:
+            frame = lamella.frames(np.array([drill.x + lamella.start]))
+            motion = np.column_stack([frame.t[0], frame.b[0], frame.n[0], frame.points[0]])
+            tool = manifold3d.Manifold.cylinder(
+                2.0 * part.width, drill.diameter / 2.0, circular_segments=_ROUND, center=True
+            )
+            tools.append(tool.transform(motion))
+    return manifold3d.Manifold.batch_boolean([solid, *tools], manifold3d.OpType.Subtract)
 
 
 def _drill(

@@ -26,6 +26,8 @@ COLUMNS = (
     "slot_width_min_mm",
     "slot_width_max_mm",
     "holes",
+    "wall_mm",
+    "drillings",
     "bevel_start_mm",
     "bevel_end_mm",
     "mass_kg",
@@ -36,6 +38,10 @@ A strip that lies on no sheet has none."""
 
 BILL_COLUMNS = ("item", "size", "quantity", "unit", "material", "mass_kg", "total_kg", "note")
 """Of ``bill.csv``; mass_kg is that of one piece, empty where it is not known."""
+
+
+DRILL_COLUMNS = ("mark", "from_end_mm", "diameter_mm", "node", "purpose")
+"""Of ``drillings.csv``."""
 
 
 def mass(part: FlatPart, material: Material) -> float:
@@ -74,6 +80,22 @@ def write_schedule(
     rows = [_row(part, material, sheet_of.get(part.mark, "")) for part in parts]
     rows += [_more(line) for line in more]
     write_csv(path, "The cut list", [COLUMNS, *rows])
+
+
+def write_drillings(path: Path | str, parts: Sequence[FlatPart]) -> None:
+    """Write where tubes are drilled through both narrow walls, from their left ends.
+
+    Raises
+    ------
+    OutputError
+        When the file cannot be written.
+    """
+    rows = [
+        (part.mark, f"{drill.x:.2f}", f"{drill.diameter:g}", drill.node, drill.purpose)
+        for part in parts
+        for drill in part.drills
+    ]
+    write_csv(path, "The list of drillings", [DRILL_COLUMNS, *rows])
 
 
 def write_bill(path: Path | str, bill: Sequence[BillLine]) -> None:
@@ -131,6 +153,8 @@ def _row(part: FlatPart, material: Material, sheet: int | str) -> list[str | int
         f"{min(widths):.2f}" if widths else "",
         f"{max(widths):.2f}" if widths else "",
         len(part.holes),
+        f"{part.wall:g}" if part.wall else "",
+        len(part.drills),
         *(f"{run:.2f}" if run else "" for run in part.bevels),
         six_digits(mass(part, material)),
         sheet,
@@ -144,5 +168,5 @@ def _more(line: Line) -> list[str | int]:
     return [
         *(line.mark, 1, f"{line.length:.2f}"),
         *("" if line.width is None else f"{line.width:.2f}", cell(line.thickness), line.material),
-        *("", "", "", "", "", "", cell(line.mass), line.sheet),
+        *("", "", "", "", "", "", "", "", cell(line.mass), line.sheet),
     ]

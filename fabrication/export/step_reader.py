@@ -8,7 +8,7 @@ large ruled faces of each solid, and the corners of the loop that trims them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,16 @@ from gridshell import FileError
 from gridshell.arrays import Floats
 
 _NEWTON_STEPS = 8
+
+_TUBE_FACES = 8
+_PARALLEL = 0.9
+"""Cosine above which the rulings of two faces point the same way."""
+
+_SAME_DRILL = 1e-3
+"""What the holes of a drill may be apart on both walls, mm."""
+
+_Candidate = tuple[float, Any, Any]
+"""Area of the parameters, surface, face."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +83,7 @@ class StepPart:
     mark : the product's name.
     near, far : the two large faces, with common parameters.
     near_loops, far_loops : the loops that trim them, rows u, v, bulge; the outer one first.
+    cavity : of a tube, what the file says of the space inside.
     """
 
     mark: str
@@ -80,6 +91,7 @@ class StepPart:
     far: RuledSide
     near_loops: tuple[Floats, ...]
     far_loops: tuple[Floats, ...]
+    cavity: Cavity | None = None
 
     @property
     def loop(self) -> Floats:
@@ -121,8 +133,12 @@ class StepPart:
         """Volume between the faces, by Gauss quadrature, mm3.
 
         Circular segments between arcs and their chords, holes among them, are taken with what lies
-        over the middle of their chord; at bevelled ends with the mean of both faces' loops.
+        over the middle of their chord; at bevelled ends with the mean of both faces' loops. Of a
+        tube the cavity is taken off, and what is drilled out of its narrow walls.
         """
+        if self.cavity is not None:
+            whole = abs(self._over(self.near_loops))
+            return whole - self.cavity.inside.volume() - self.cavity.drilled()
         near, far = self.near_loops, self.far_loops
         if any(len(a) != len(b) for a, b in zip(near, far, strict=True)):
             raise FileError("The two large faces of a solid have other corners", where=self.mark)
@@ -131,6 +147,25 @@ class StepPart:
         )
         sides = (near,) if square else (near, far)
         return float(np.mean([abs(self._over(loops)) for loops in sides]))
+
+    def drills(self) -> Floats:
+        """(m, 2) x on the flat strip and diameter of the holes through a tube's upper wall.
+
+        Raises
+        ------
+        FileError
+            Where the lower wall is drilled in other places.
+        """
+        if self.cavity is None:
+            return np.zeros((0, 2))
+        walls = []
+        for loops in self.cavity.flanges:
+            rows = [[self.unrolled_loop(r)[:, 0].mean(), np.ptp(r[:, 0])] for r in loops[1:]]
+            walls.append(np.array(sorted(rows)).reshape(-1, 2))
+        upper, lower = walls
+        if upper.shape != lower.shape or np.abs(upper - lower).max(initial=0.0) > _SAME_DRILL:
+            raise FileError("The walls of a tube are drilled in different places", where=self.mark)
+        return upper
 
     def _over(self, loops: Sequence[Floats]) -> float:
         """Volume between the faces over the loops of one of them."""
@@ -163,6 +198,27 @@ class StepPart:
         if inverse:
             return CubicHermiteSpline(arc, stops, 1.0 / speed)
         return CubicHermiteSpline(stops, arc, speed)
+
+
+@dataclass(frozen=True, eq=False)
+class Cavity:
+    """What makes a tube of a solid.
+
+    Parameters
+    ----------
+    inside : the two wide inner faces, as a part of its own.
+    flanges : loops of the upper and of the lower narrow outer face, the outer loop first.
+    wall : between a narrow outer face and the inner one behind it, mm.
+    """
+
+    inside: StepPart
+    flanges: tuple[tuple[Floats, ...], tuple[Floats, ...]]
+    wall: float
+
+    def drilled(self) -> float:
+        """Volume of all holes, mm3: the area of a hole's circle times the wall."""
+        holes = [loop for loops in self.flanges for loop in loops[1:]]
+        return float(sum(np.pi / 4.0 * np.ptp(loop[:, 0]) ** 2 for loop in holes)) * self.wall
 
 
 def read_step(path: Path | str) -> tuple[StepPart, ...]:
@@ -212,7 +268,7 @@ def _part(path: Path | str, name: str, brep: Any) -> StepPart | None:
     from OCP.StepGeom import StepGeom_BSplineSurfaceWithKnots
 
     shell = brep.Outer()
-    candidates = []
+    candidates: list[_Candidate] = []
     for face in (shell.CfsFacesValue(i) for i in range(1, shell.NbCfsFaces() + 1)):
         surface = face.FaceGeometry()
         if isinstance(surface, StepGeom_BSplineSurfaceWithKnots) and surface.VDegree() == 1:
@@ -222,14 +278,54 @@ def _part(path: Path | str, name: str, brep: Any) -> StepPart | None:
         return None
     if len(candidates) < 2:
         raise FileError("A solid has no two large ruled faces", where=f"{path}, {name}")
-    near, far = (_ruled(surface) for _, surface, _ in candidates[:2])
+    where = f"{path}, {name}"
+    whole = _between(where, name, candidates[:2])
+    return replace(whole, cavity=_cavity(where, whole, candidates))
+
+
+def _between(where: str, name: str, pair: Sequence[_Candidate]) -> StepPart:
+    near, far = (_ruled(surface) for _, surface, _ in pair)
     if not np.array_equal(near.lower.t, far.lower.t):
-        raise FileError("The two large faces of a solid differ", where=f"{path}, {name}")
+        raise FileError("The two large faces of a solid differ", where=where)
     loops = [
         read_loops(face, side.parameters)
-        for side, (_, _, face) in zip((near, far), candidates[:2], strict=True)
+        for side, (_, _, face) in zip((near, far), pair, strict=True)
     ]
     return StepPart(name, near, far, loops[0], loops[1])
+
+
+def _cavity(where: str, whole: StepPart, candidates: Sequence[_Candidate]) -> Cavity | None:
+    """Of a solid with eight faces along its whole length: four around it, four inside."""
+    knots = whole.near.lower.t
+    long = [
+        c
+        for c in candidates
+        if c[1].UDegree() == whole.near.lower.k
+        and np.allclose([c[1].UKnotsValue(1), c[1].UKnotsValue(c[1].NbUKnots())], knots[[0, -1]])
+    ]
+    if len(long) != _TUBE_FACES:
+        return None
+    u, half = np.array([(knots[0] + knots[-1]) / 2.0]), np.array([whole.near.width / 2.0])
+    middle = whole.middle.points(u, half)[0]
+    up = whole.middle.slopes(u, half)[1][0]
+    wide: list[tuple[float, bool, _Candidate]] = []
+    narrow: list[tuple[float, bool, _Candidate]] = []
+    for candidate in long[2:]:
+        side = _ruled(candidate[1])
+        here = np.array([side.width / 2.0])
+        along = abs(float(side.slopes(u, here)[1][0] @ up))
+        height = float((side.points(u, here)[0] - middle) @ up)
+        (wide if along > _PARALLEL else narrow).append((abs(height), height > 0.0, candidate))
+    if len(wide) != 2 or len(narrow) != 4:
+        return None
+    narrow.sort(key=lambda found: found[0], reverse=True)  # both outer ones first
+    outer = sorted(narrow[:2], key=lambda found: found[1], reverse=True)
+    loops = [read_loops(c[2], _ruled(c[1]).parameters) for _, _, c in outer]
+    return Cavity(
+        inside=_between(where, whole.mark, [c for _, _, c in wide]),
+        flanges=(loops[0], loops[1]),
+        wall=narrow[0][0] - narrow[2][0],
+    )
 
 
 def _extent(surface: Any) -> float:

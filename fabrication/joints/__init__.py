@@ -3,6 +3,7 @@
 from fabrication.joints.cleats import Cleat
 from fabrication.joints.double_slot import DoubleSlotJoint, StarWasher
 from fabrication.joints.half_lap import slot_width
+from fabrication.joints.hinged import HingedJoint
 from fabrication.joints.joint import Joint
 from fabrication.joints.reciprocal import ReciprocalJoint
 from fabrication.joints.scissor import AnglePlay, ScissorJoint, angle_play
@@ -16,6 +17,7 @@ JOINTS: dict[str, type[Joint]] = {
     "reciprocal": ReciprocalJoint,
     "two-level": StudJoint,
     "double-slot": DoubleSlotJoint,
+    "hinged": HingedJoint,
 }
 
 __all__ = [
@@ -23,6 +25,7 @@ __all__ = [
     "AnglePlay",
     "Cleat",
     "DoubleSlotJoint",
+    "HingedJoint",
     "Joint",
     "ReciprocalJoint",
     "ScissorJoint",

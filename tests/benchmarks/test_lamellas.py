@@ -42,7 +42,7 @@ def tight(name, **joint):
     clock = Clock(lambda stage: None)
     route = route_of(bare)
     begun = start(bare, EXAMPLES, clock.stage)
-    control = optimised(bare, route.recipe(), begun).require().control
+    control = optimised(bare, route.recipe(Path()), begun).require().control
     return route.build(control, clock)
 
 

@@ -282,14 +282,14 @@ def test_the_command_ends_with_2_and_leaves_nothing(tmp_path):
 )
 def test_the_rim_is_flat_where_it_is_free_and_carries_plates(anchor, sections, flat):
     content = project(net={**SMALL["net"], "anchor": anchor}, **sections)
-    recipe = PanelRoute(content, content.panels).recipe()
+    recipe = PanelRoute(content, content.panels).recipe(Path())
     assert [type(c) for c in recipe.conditions] == ([gs.FlatRim] if flat else [])
 
 
 def test_the_recipe_has_the_project_s_conditions_steps_and_tolerance():
     net = {"kind": "planar", "anchor": "free", "square": True, "steps": 12, "tolerance": 1e-7}
     content = project(net=net)
-    recipe = PanelRoute(content, content.panels).recipe()
+    recipe = PanelRoute(content, content.panels).recipe(Path())
     assert (recipe.angle, recipe.rhombus) == (pytest.approx(np.pi / 2.0), True)
     assert (recipe.stop.steps, recipe.stop.tolerance) == (12, 1e-7)
 

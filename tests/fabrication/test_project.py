@@ -205,7 +205,11 @@ def test_a_project_that_is_written_and_read_is_the_same(read, beside, changes):
 
 @pytest.mark.parametrize(
     ("changes", "keys"),
-    [({}, ["angle", "overhang"]), (RING, ["angle", "overhang", "u"]), (FULL, [])],
+    [
+        ({}, ["angle", "angle_between", "overhang", "supports", "wall"]),
+        (RING, ["angle", "angle_between", "overhang", "supports", "u", "wall"]),
+        (FULL, ["angle_between", "supports", "wall"]),
+    ],
 )
 def test_what_is_unset_is_written_as_a_comment(read, changes, keys):
     lines = fab.project_text(read(changes)).splitlines()
@@ -229,7 +233,7 @@ WRONG = {
     "profile.thickness": [-2.0, 0.0, float("nan"), float("inf"), "two", "2", [2.0]],
     "profile.width": [-1.0, {}],
     "profile.overhang": [0.0, -5.0],
-    "net.angle": [0.0, 180.0, -5.0, 200.0, float("nan"), "right"],
+    "net.angle": [0.0, 180.0, -5.0, 200.0, float("nan"), ["right"]],
     "net.anchor": ["fixed", 1],
     "net.skin": ["D3"],
     "net.kind": ["flat"],
@@ -412,7 +416,7 @@ def test_a_missing_number_of_one_s_own_material_is_named(refused):
 )
 def test_a_project_needs_exactly_one_source(refused, changes):
     error = refused(changes)
-    assert error.what == "Give either [surface] with [patch] or [remesh], or [mesh]"
+    assert error.what == "Give either [surface] with [patch] or [remesh], or [mesh], or [umbrella]"
 
 
 @pytest.mark.parametrize(

@@ -62,3 +62,23 @@ def test_margins_that_leave_nothing_of_a_sheet_are_refused():
     with pytest.raises(gs.SettingError, match="leave nothing") as info:
         fab.Sheet(3000.0, 100.0, margin=50.0)
     assert (info.value.where, info.value.limit) == ("margin", "below 50 mm")
+
+
+@pytest.mark.parametrize(
+    ("width", "thickness", "wall", "key"),
+    [
+        (40.0, 50.0, 2.0, "thickness"),
+        (40.0, 14.0, 7.0, "wall"),
+        (40.0, 14.0, 0.0, "wall"),
+        (0.0, 14.0, 2.0, "width"),
+    ],
+)
+def test_tubes_that_cannot_be_are_refused(width, thickness, wall, key):
+    with pytest.raises(gs.SettingError) as info:
+        fab.HollowProfile(width, thickness, fab.GRP, wall)
+    assert info.value.where == key
+
+
+def test_a_tube_may_be_as_thick_as_wide_and_says_its_size():
+    assert fab.HollowProfile(40.0, 40.0, fab.GRP, 3.0).size == "40 x 40 x 3"
+    assert fab.Profile(100.0, 2.5, fab.S235).size == "100 x 2.5"

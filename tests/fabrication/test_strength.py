@@ -243,3 +243,29 @@ def test_figures_do_not_depend_on_where_the_shell_stands(pair):
     there = bay_stress(structure, fab.flat_parts(structure, fab.SlotJoint()))
     for key in ("radius", "twist", "utilisation", "thickest"):
         np.testing.assert_allclose(getattr(there, key), getattr(here, key), rtol=1e-4)
+
+
+def test_a_tube_carries_twist_as_a_closed_ring_and_stretches_away_from_its_axis():
+    """Against integrals over the wall, cut into small pieces."""
+    width, thickness, wall = 50.0, 20.0, 2.0
+    weak, strong, twist = 2e-4, 1e-5, 3e-4
+    found = section_stress(
+        *(np.array([rate]) for rate in (weak, strong, twist)),
+        width=width,
+        thickness=thickness,
+        material=fab.GRP,
+        wall=wall,
+    )
+    e, g = fab.GRP.modulus, fab.GRP.rigidity
+    z, y = (np.linspace(-a / 2, a / 2, 2001) for a in (width, thickness))
+    z, y = np.meshgrid((z[1:] + z[:-1]) / 2, (y[1:] + y[:-1]) / 2, indexing="ij")
+    in_wall = (np.abs(z) > width / 2 - wall) | (np.abs(y) > thickness / 2 - wall)
+    gyration = float((z**2 + y**2)[in_wall].mean())
+    corner = e * twist**2 / 2 * (width**2 / 4 + thickness**2 / 4 - gyration)
+    middle = e * twist**2 / 2 * (gyration - thickness**2 / 4)
+    ring, length = (width - wall) * (thickness - wall), 2 * (width + thickness - 2 * wall)
+    assert found["helix_edge"][0] == pytest.approx(corner, rel=1e-3)
+    assert found["helix_mid"][0] == pytest.approx(middle, rel=1e-3)
+    assert found["shear"][0] == pytest.approx(g * twist * 2 * ring / length)
+    assert found["bending"][0] == pytest.approx(e * thickness / 2 * weak)
+    assert found["edgewise"][0] == pytest.approx(e * width / 2 * strong)

@@ -37,7 +37,7 @@ def index_page(
     connectors = sum(len(kind.bodies) for kind in jointed.connectors)
     facts = (
         f"{len(jointed.design.lamellas)} lamellas, {len(jointed.design.nodes)} nodes",
-        f"{len(parts)} strips of {profile.width:g} x {profile.thickness:g} mm, "
+        f"{len(parts)} strips of {profile.size} mm, "
         f"{profile.material.name}: {sum(p.length for p in parts) / 1e3:.1f} m, {mass:.1f} kg",
         f"{connectors} connectors",
     )

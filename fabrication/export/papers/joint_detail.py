@@ -239,7 +239,7 @@ def _notes(jointed: Jointed, parts: Sequence[FlatPart], node: Node, frame: Frame
     """What the drawing does not dimension, each a line."""
     profile = jointed.design.profile
     angle = float(np.degrees(node.angle or 0.0))
-    notes = [f"Node angle {angle:.2f} degrees; strips {profile.width:g} x {profile.thickness:g} mm"]
+    notes = [f"Node angle {angle:.2f} degrees; strips {profile.size} mm"]
     slots = [
         (part.mark[0], slot)
         for part in parts

@@ -112,6 +112,7 @@ def _cuts(part: FlatPart, uncut: Sequence[tuple[float, str, str]]) -> list[_Cut]
     found += [
         _Cut(hole.x, f"{hole.node} d {hole.diameter:g} y {hole.y:.1f}") for hole in part.holes
     ]
+    found += [_Cut(d.x, f"{d.node} d {d.diameter:g} drilled") for d in part.drills]
     return sorted(found, key=lambda cut: cut.x)
 
 
@@ -123,10 +124,18 @@ def _end(part: FlatPart, which: int) -> str:
     return f"end {angle:.1f} deg, {'near' if run > 0.0 else 'far'} longer"
 
 
+def _section(part: FlatPart) -> str:
+    """Width and thickness, and the wall of a tube."""
+    size = f"{part.width:g} x {part.thickness:g}"
+    return f"{size} x {part.wall:g}" if part.wall else size
+
+
 def _depths(part: FlatPart) -> str:
     """Edges the slots open to, their depths and floors, where there are any."""
     kinds = sorted({(s.edge.value, s.depth, s.floor.value) for s in part.slots})
     told = [f"{edge} edge, {depth:g} deep, {floor} floors" for edge, depth, floor in kinds]
+    if part.drills:
+        return "drilled through both narrow walls, square to the edge"
     return f"slots: {'; '.join(told)}" if told else ""
 
 
@@ -148,7 +157,7 @@ def _draw(
     pen.text(
         x + 4.0 + text_width(part.mark, 4.0, bold=True),
         top - 5.0,
-        f"1 piece   {part.length:.1f} x {part.width:g} x {part.thickness:g} mm   "
+        f"1 piece   {part.length:.1f} x {_section(part)} mm   "
         f"{material.name}   {mass:.3g} kg   {_depths(part)}{more}",
     )
     base = top - _HEAD - _ABOVE - part.width / across
@@ -157,6 +166,11 @@ def _draw(
     _clipped(pen, flat, x, x + (row.high - row.low) / along)
     cuts = [cut for cut in told if row.low - 1e-6 <= cut.x <= row.high + 1e-6]
     _figures(pen, cuts, x, base, part.width / across, row, along)
+    for drill in part.drills:
+        if row.low <= drill.x <= row.high:
+            at = x + (drill.x - row.low) / along
+            ends = [(at, base - 1.0), (at, base + part.width / across + 1.0)]
+            pen.line(ends, width=THIN, dash=(2.0, 0.7, 0.4, 0.7))
     for hole in part.holes:
         if row.low <= hole.x <= row.high:
             at = x + (hole.x - row.low) / along

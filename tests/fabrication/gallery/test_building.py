@@ -2,8 +2,10 @@
 
 import json
 import sys
+from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 from PIL import Image
 from typer.testing import CliRunner
@@ -32,6 +34,22 @@ def test_every_figure_holds_by_its_own_numbers(tmp_path, name):
     with Image.open(picture) as image:
         colours = image.convert("RGB").getcolors(maxcolors=1 << 20)
     assert len(colours) > 5
+
+
+PICTURES = Path(__file__).parents[3] / "examples" / "gallery"
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_the_readme_shows_the_picture_that_is_made(tmp_path, name):
+    stem = f"fig_{int(name):02d}.png"
+    assert f"(examples/gallery/{stem})" in (PICTURES.parents[1] / "README.md").read_text()
+    build(tmp_path, [name])
+    with Image.open(PICTURES / stem) as shown, Image.open(tmp_path / stem) as made:
+        assert shown.size == made.size
+        apart = np.abs(
+            np.subtract(*(np.asarray(i.convert("L"), dtype=float) for i in (shown, made)))
+        )
+    assert apart.mean() < 1.0
 
 
 def stand_in(monkeypatch, make):
