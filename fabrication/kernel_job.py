@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from fabrication.errors import KernelError
+from fabrication.outlines import Frame
 from fabrication.parts import FlatPart
 from fabrication.shapes import Bodies, Prisms, joined
 from fabrication.structures import Structure
@@ -39,7 +40,8 @@ class Work(Protocol):
 class LamellaWork:
     """The bent and twisted strips with their connectors, in an assembly called *name*.
 
-    *more* bodies, of a facade, are written beside it, by *beside*'s name.
+    *more* bodies, of a facade, are written beside it, by *beside*'s name. Copies of it all lie at
+    *poses*.
     """
 
     strips: Structure
@@ -48,20 +50,23 @@ class LamellaWork:
     connectors: Sequence[Prisms] = ()
     more: Bodies | None = None
     beside: str = ""
+    poses: Sequence[Frame] = ()
 
     def do(self, step: Path, lap: Lap) -> tuple[Any, ...]:
-        """See :class:`Work`; ``StepPart``s, then ``StepPrism``s of connectors and of *more*."""
-        from fabrication.export.step_bodies import strip_kinds, write_assembly
-        from fabrication.export.step_prism_reader import read_prisms
+        """See :class:`Work`; ``StepPart``s, ``StepCopy``s, then ``StepPrism``s of the others."""
+        from fabrication.export.step_bodies import SEGMENT, strip_kinds, write_assembly
+        from fabrication.export.step_prism_reader import read_copies, read_prisms
         from fabrication.export.step_reader import read_step
         from fabrication.solid import solids
 
         kinds = strip_kinds(self.strips, solids(self.strips, self.parts))
         lap("solids")
-        write_assembly(step, name=self.name, strips=kinds, bodies=joined(*self.connectors))
+        bodies = joined(*self.connectors)
+        write_assembly(step, name=self.name, strips=kinds, bodies=bodies, poses=self.poses)
         lap("STEP")
         found = read_step(step)
-        placed = read_prisms(step) if self.connectors else ()
+        copies = read_copies(step, SEGMENT) if self.poses else ()
+        placed = (*copies, *(read_prisms(step) if self.connectors else ()))
         lap("STEP read back")
         if self.more is None:
             return (*found, *placed)

@@ -23,13 +23,24 @@ from fabrication.joint_settings import joint_of
 from fabrication.jointed import Jointed
 from fabrication.joints import HingedJoint
 from fabrication.lamella_sections import FlatSection
-from fabrication.lamella_stock import BarStock, SheetSet, bar_stock, other_sheets, strip_sheets
-from fabrication.lamella_system import LamellaSystem, Moving, Plans
+from fabrication.lamella_stock import (
+    BarStock,
+    SheetSet,
+    bar_stock,
+    copies_of,
+    other_sheets,
+    strip_sheets,
+)
+from fabrication.lamella_system import LamellaSystem, Plans
 from fabrication.motion import motion, motion_findings
+from fabrication.moving import Moving
 from fabrication.parts import FlatPart, parts_of
 from fabrication.placing import keyed
 from fabrication.routes import Clock
 from fabrication.sections import ProfileSection, Project
+from fabrication.segment_checks import require_apart
+from fabrication.segmented import Segmented
+from fabrication.segments import Segments
 from fabrication.settings import profile_of, sheet_of
 from fabrication.shop import Process
 from fabrication.shop_checks import shop_findings
@@ -90,7 +101,8 @@ class LamellaRoute:
         with clock.stage("parts"):
             with keyed("shop"):
                 process = process_of(self.project.shop, profile)
-            parts = parts_of(jointed, process.relief)
+            segmented = self._segmented(jointed)
+            parts = parts_of(jointed, process.relief, copies=copies_of(self.project))
             strips = strip_sheets(parts, self.project, profile, bars)
             others = tuple(other_sheets(jointed, self.project, bars, self._coupons(jointed)))
             facade = self._facade(skin, jointed.design)
@@ -103,6 +115,7 @@ class LamellaRoute:
                 *check(jointed.strips, parts, stress),
                 *self._shop_findings(process, parts, others),
                 *self._motion_findings(moving, profile),
+                *(() if segmented is None else segmented.findings),
             )
         return LamellaSystem(
             project=self.project,
@@ -115,6 +128,7 @@ class LamellaRoute:
             facade=facade,
             plans=plans,
             moving=moving,
+            segmented=segmented,
             process=process,
             findings=findings,
         )
@@ -135,6 +149,14 @@ class LamellaRoute:
         design = structure(skin, profile, overhang=self.profile.overhang)
         with keyed("joint"):
             return joint_of(self.joint, profile).build(design)
+
+    def _segmented(self, jointed: Jointed) -> Segmented | None:
+        """Equal segments, where the project asks for them and they have room."""
+        section = self.project.segments
+        if section is None:
+            return None
+        segments = Segments(section.count, section.centre, section.seam)
+        return Segmented(segments, require_apart(segments, jointed.strips), section.hang)
 
     def _moving(self, control: gs.ControlMesh, design: Structure, clock: Clock) -> Moving | None:
         """The motion of the net, where the project asks for it."""
@@ -165,7 +187,7 @@ class LamellaRoute:
         if self.project.bars is None:
             return None
         with keyed("bars"):
-            return bar_stock(whole, self.project.bars)
+            return bar_stock(whole, self.project.bars, copies_of(self.project))
 
     def _assembly(self, whole: Jointed) -> tuple[Assembly, FlatState | None]:
         """The order of assembly, and the flat state where the project asks for it."""

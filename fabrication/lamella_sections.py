@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from fabrication.joint_sections import OwnOrStrips
-from fabrication.section_types import Distance, Number, Section, Size, Whole
+from fabrication.section_types import Distance, Number, Place, Section, Size, Whole
 
 
 class SpliceSection(Section):
@@ -35,6 +35,15 @@ class BarsSection(Section):
     splice: Annotated[
         SpliceSection | None, Field(description="no strip may be longer than a bar")
     ] = None
+
+
+class SegmentsSection(Section):
+    """Copies of the net around a vertical axis; everything else describes one of them. mm."""
+
+    count: Annotated[Whole, Field(ge=2, le=1000)]
+    centre: tuple[Place, Place] = (0.0, 0.0)
+    seam: Distance = 0.0
+    hang: bool = True
 
 
 class FlatSection(Section):

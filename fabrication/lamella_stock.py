@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from fabrication.bars import Bar, CutBar
+from fabrication.cutting_stock import cut_bars
 from fabrication.finding import Finding
 from fabrication.joint_settings import own_or_strips
 from fabrication.jointed import Jointed
@@ -91,8 +94,12 @@ class BarStock:
         return spliced(jointed, self.plan, self.plate)
 
 
-def bar_stock(jointed: Jointed, section: BarsSection) -> BarStock:
+def bar_stock(jointed: Jointed, section: BarsSection, copies: int = 1) -> BarStock:
     """Choose splices and bars for the strips of *jointed*.
+
+    Parameters
+    ----------
+    copies : how often all strips are built; splices are chosen for one, bars for all.
 
     Raises
     ------
@@ -110,7 +117,19 @@ def bar_stock(jointed: Jointed, section: BarsSection) -> BarStock:
         plate = splice_plate(section.splice, jointed.strips.profile)
         runs = runs_of(jointed, plate, clear=section.splice.clear)
         front = tradeoff(runs, bar, gap=section.splice.gap, shortest=section.shortest)
+    if copies > 1:
+        front = tuple(_repeated(plan, copies) for plan in front)
     return BarStock(preferred(front, _WISHES[section.prefer]), front, plate)
+
+
+def _repeated(plan: SplicePlan, copies: int) -> SplicePlan:
+    """The same splices in every copy, and the bars that all pieces are cut from."""
+    pieces = [piece for cut in plan.bars.cut for piece in cut.pieces] * copies
+    bars = cut_bars(pieces, plan.bars.bar)
+    whole = sum(piece.length for piece in pieces)
+    return replace(
+        plan, copies=copies, bars=bars, floor=int(np.ceil(whole / plan.bars.bar.room - 1e-9))
+    )
 
 
 def splice_plate(section: SpliceSection, profile: Profile) -> SplicePlate:
@@ -126,14 +145,19 @@ def splice_plate(section: SpliceSection, profile: Profile) -> SplicePlate:
     )
 
 
+def copies_of(project: Project) -> int:
+    """How often everything is built."""
+    return 1 if project.segments is None else project.segments.count
+
+
 def strip_sheets(
     parts: Sequence[FlatPart], project: Project, profile: Profile, bars: BarStock | None
 ) -> SheetSet:
-    """The strips on their sheets, or on the bars of the plan."""
+    """The strips of all copies on their sheets, or on the bars of the plan."""
     material = profile.material.name
     if bars is None:
-        sheet = sheet_of(project.sheet)
-        return SheetSet("sheet", material, nest(parts, sheet), sheet_bound(parts, sheet))
+        sheet, every = sheet_of(project.sheet), [*parts] * copies_of(project)
+        return SheetSet("sheet", material, nest(every, sheet), sheet_bound(every, sheet))
     named = {part.mark: part for part in parts}
     cut = tuple(_as_sheet(bar, named, profile) for bar in bars.plan.bars.cut)
     return SheetSet(BAR, material, cut, bars.plan.bars.bound)
@@ -151,12 +175,12 @@ def other_sheets(
     jointed: Jointed, project: Project, bars: BarStock | None, coupons: Sequence[SheetPart] = ()
 ) -> Iterator[SheetSet]:
     """Connectors that are cut from sheet, splice plates and coupons, each on sheets of its own."""
-    sheet = sheet_of(project.panel_sheet or project.sheet)
+    sheet, copies = sheet_of(project.panel_sheet or project.sheet), copies_of(project)
     for kind in jointed.connectors:
         if kind.from_sheet and kind.bodies:
-            yield _nested(kind.name.replace(" ", "-"), kind.material, _pieces(kind), sheet)
+            yield _nested(kind.name.replace(" ", "-"), kind.material, _pieces(kind) * copies, sheet)
     if bars is not None and bars.plate is not None and bars.plan.splices:
-        plates = splice_plates(bars.plan, bars.plate)
+        plates = [*splice_plates(bars.plan, bars.plate)] * copies
         yield _nested("splices", bars.plate.material.name, plates, sheet)
     if coupons:
         material = jointed.strips.profile.material.name

@@ -10,7 +10,7 @@ from pathlib import Path
 import gridshell as gs
 from fabrication.assembling import Assembly
 from fabrication.errors import KernelError
-from fabrication.export.step_prism_reader import StepPrism
+from fabrication.export.step_prism_reader import StepCopy, StepPrism
 from fabrication.export.step_reader import StepPart
 from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_findings
 from fabrication.finding import Finding
@@ -21,7 +21,7 @@ from fabrication.jointed import Jointed
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.lamella_sections import PapersSection
 from fabrication.lamella_stock import BarStock, SheetSet
-from fabrication.motion import Motion, motion_section
+from fabrication.moving import Moving
 from fabrication.parts import FlatPart
 from fabrication.placing import keyed
 from fabrication.routes import (
@@ -34,6 +34,7 @@ from fabrication.routes import (
     loop_findings,
 )
 from fabrication.sections import Project
+from fabrication.segmented import Segmented
 from fabrication.shop import Process
 from fabrication.strength import BayStress
 from fabrication.stress_checks import stress_section
@@ -70,30 +71,6 @@ class Plans:
 
 
 @dataclass(frozen=True, eq=False)
-class Moving:
-    """A net that moves.
-
-    Parameters
-    ----------
-    motion : from one lock to the other.
-    opening : of the position that is built.
-    """
-
-    motion: Motion
-    opening: float
-
-    def write(self, draft: Path, name: str) -> None:
-        """A list, an animation, and a page with a slider."""
-        from fabrication.export.motion_glb import write_motion_glb
-        from fabrication.export.motion_page import write_motion_page
-        from fabrication.export.motion_schedule import write_motion
-
-        write_motion(draft / "motion.csv", self.motion)
-        write_motion_glb(draft / "motion.glb", self.motion)
-        write_motion_page(draft / "motion.html", self.motion, name=name, opening=self.opening)
-
-
-@dataclass(frozen=True, eq=False)
 class LamellaSystem:
     """Strips, their joints, flat parts and stock.
 
@@ -104,6 +81,7 @@ class LamellaSystem:
     bars : None where strips are cut from sheets.
     sheets : of the strips first, then of connectors, splice plates and coupons.
     moving : where the net moves.
+    segmented : where there are equal segments.
     process : how the shop cuts, and wants its files.
     """
 
@@ -117,6 +95,7 @@ class LamellaSystem:
     facade: FacadeSystem | None
     plans: Plans
     moving: Moving | None
+    segmented: Segmented | None
     process: Process
     findings: Sequence[Finding]
 
@@ -128,6 +107,8 @@ class LamellaSystem:
         work = LamellaWork(jointed.strips, self.parts, self.project.name, jointed.connectors)
         if facade is not None:
             work = replace(work, more=facade.bodies, beside=STEP_FILE)
+        if self.segmented is not None:
+            work = replace(work, poses=self.segmented.segments.poses)
         cad.order(work, draft / "structure.step")
         with clock.stage("fit"):
             fitted = fit(jointed.strips, self.parts, jointed.connectors)
@@ -154,9 +135,13 @@ class LamellaSystem:
             closed = asdict(compare(reference, self.parts, drawn, strips, prisms))
             findings = [*faults, *lamella_loop_findings(closed, fitted)]
             more: Report = {}
+            if self.segmented is not None:
+                copies = [part for part in solid.parts if isinstance(part, StepCopy)]
+                more, misplaced = self.segmented.closure(reference.design, copies, len(self.parts))
+                findings += misplaced
             if facade is not None:
                 glazed = facade.closure(net, reference.design, panels, prisms)
-                more = {"facade": facade.figures(glazed)}
+                more = {**more, "facade": facade.figures(glazed)}
                 findings += facade_findings(glazed)
         return Written(
             sections={
@@ -164,7 +149,7 @@ class LamellaSystem:
                 "stress": stress_section(self.stress),
                 "stock": self._stock(),
                 **self.plans.sections(),
-                **({} if self.moving is None else {"motion": motion_section(self.moving.motion)}),
+                **({} if self.moving is None else self.moving.sections()),
                 "closure": closed,
                 "fit": {
                     "clash_mm3": {"max": fitted.max_mm3},
@@ -193,6 +178,7 @@ class LamellaSystem:
             clearance=joint.clearance if isinstance(joint, SlottedJoint) else None,
             facade=None if self.facade is None else self.facade.built,
             pictures=pictures,
+            copies=() if self.segmented is None else self.segmented.segments.poses[1:],
         )
 
     # ---- files ---------------------------------------------------------------------------------
@@ -235,7 +221,11 @@ class LamellaSystem:
         material = self.jointed.design.profile.material
         lines = [] if self.facade is None else self.facade.lines()
         write_schedule(draft / "parts.csv", self.parts, self.sheets[0].sheets, material, lines)
-        write_bill(draft / "bill.csv", self.jointed.bill)
+        bill = self.jointed.bill
+        if self.segmented is not None:
+            bill = self.segmented.bill(bill)
+            self.segmented.write(draft, self.jointed.design)
+        write_bill(draft / "bill.csv", bill)
         if any(part.drills for part in self.parts):
             write_drillings(draft / "drillings.csv", self.parts)
         write_bay_schedule(draft / "bays.csv", self.stress)
@@ -294,11 +284,12 @@ class LamellaSystem:
             "nodes": len(jointed.design.nodes),
             "joints": fitted.nodes,
             "connectors": {kind.name: len(kind.bodies) for kind in jointed.connectors},
-            "total_length_m": round(sum(p.length for p in parts) / 1000.0, 3),
-            "mass_kg": float(f"{sum(p.volume for p in parts) * density * 1e-9:.6g}"),
+            "total_length_m": round(sum(p.quantity * p.length for p in parts) / 1000.0, 3),
+            "mass_kg": float(f"{sum(p.quantity * p.volume for p in parts) * density * 1e-9:.6g}"),
             "max_edgewise_mm": max(p.development.edgewise for p in parts),
             "max_edge_strain": max(p.development.edge_strain for p in parts),
             "sheets": len(self.sheets[0].sheets),
+            **({} if self.segmented is None else {"segments": self.segmented.segments.count}),
         }
 
     def _solids(self, cad: Kernel) -> KernelResult:

@@ -94,7 +94,9 @@ def compare(
     FileError
         When a part is missing, or has another number of slots or holes than it should.
     """
-    flat = {part.mark: part for part in drawn_parts}
+    flat: dict[str, list[DxfPart]] = {}
+    for found in drawn_parts:
+        flat.setdefault(found.mark, []).append(found)
     bent = {part.mark: part for part in bent_parts}
     missing = [p.mark for p in parts if p.mark not in flat or p.mark not in bent]
     if missing:
@@ -106,12 +108,14 @@ def compare(
     names: list[str] = []
     ppm = outlines = 0.0
     for part in parts:
-        drawn, solid = flat[part.mark], bent[part.mark]
-        ppm = max(ppm, abs(_flat_volume(drawn, part) / solid.volume() - 1.0) * 1e6)
-        outlines = max(outlines, _outline_distance(drawn, solid, part.bevels))
-        for fixture, off in _fixture_distances(wanted[part.mark], drawn, solid, part):
-            distances.append(off)
-            names.append(f"{part.mark} at {fixture.node}")
+        solid = bent[part.mark]
+        volume = solid.volume()
+        for drawn in flat[part.mark]:
+            ppm = max(ppm, abs(_flat_volume(drawn, part) / volume - 1.0) * 1e6)
+            outlines = max(outlines, _outline_distance(drawn, solid, part.bevels))
+            for fixture, off in _fixture_distances(wanted[part.mark], drawn, solid, part):
+                distances.append(off)
+                names.append(f"{part.mark} at {fixture.node}")
     node_mm = max(distances, default=0.0)
     apart = list(_connector_distances(reference.connectors, placed))
     connector_mm = max(apart, default=0.0)

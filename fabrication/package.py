@@ -41,7 +41,7 @@ _STALE = (
     *(f"sheets/{name}-*.dxf" for name in _SHEETS),
     "facade.step",
     *(f"{name}.csv" for name in ("assembly", "bars", "bays", "beams", "bill", "flat")),
-    *(f"{name}.csv" for name in ("drillings", "motion")),
+    *(f"{name}.csv" for name in ("drillings", "hanging", "motion")),
     *("motion.glb", "motion.html"),
     *(f"{name}.pdf" for name in ("drawings", "labels", "templates")),
 )

@@ -63,6 +63,7 @@ class FlatPart:
     bevels : how much longer the near face is than the far one at either end, see ``Cuts``, mm.
     wall : of a hollow section, mm; 0 for a solid strip.
     drills : through the narrow walls of a hollow section, in order along it.
+    quantity : how many equal ones are built.
     """
 
     mark: str
@@ -76,6 +77,7 @@ class FlatPart:
     bevels: tuple[float, float] = (0.0, 0.0)
     wall: float = 0.0
     drills: tuple[Drill, ...] = ()
+    quantity: int = 1
 
     @property
     def length(self) -> float:
@@ -117,12 +119,13 @@ def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
     return parts_of(joint.build(structure))
 
 
-def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
+def parts_of(jointed: Jointed, relief: Relief = SQUARE, *, copies: int = 1) -> tuple[FlatPart, ...]:
     """One part per strip, in their order.
 
     Parameters
     ----------
     relief : of the floors of all slots.
+    copies : how often every strip is built.
 
     Raises
     ------
@@ -156,6 +159,7 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE) -> tuple[FlatPart, ...]:
                 bevels=cuts.bevels,
                 wall=wall,
                 drills=cuts.drills,
+                quantity=copies,
             )
         )
     return tuple(parts)

@@ -27,7 +27,13 @@ from fabrication.joint_sections import (
     StudSection,
     WasherSection,
 )
-from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection, SpliceSection
+from fabrication.lamella_sections import (
+    BarsSection,
+    FlatSection,
+    PapersSection,
+    SegmentsSection,
+    SpliceSection,
+)
 from fabrication.motion_sections import MotionSection, UmbrellaSection
 from fabrication.panel_sections import (
     ConnectorSection,
@@ -215,6 +221,7 @@ def _sections() -> dict[str, type[Section]]:
         "flat": FlatSection,
         "umbrella": UmbrellaSection,
         "motion": MotionSection,
+        "segments": SegmentsSection,
         "papers": PapersSection,
         "sheet": SheetSection,
         "own material": MaterialSection,

@@ -13,7 +13,12 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from fabrication.angle_sections import AngleChoice, NodeAngle, Point
 from fabrication.joint_sections import JointSection
-from fabrication.lamella_sections import BarsSection, FlatSection, PapersSection
+from fabrication.lamella_sections import (
+    BarsSection,
+    FlatSection,
+    PapersSection,
+    SegmentsSection,
+)
 from fabrication.motion_sections import MotionSection, UmbrellaSection
 from fabrication.panel_sections import (
     BeamsSection,
@@ -102,6 +107,7 @@ class Project(Section):
     flat: FlatSection | None = None
     papers: PapersSection | None = None
     motion: MotionSection | None = None
+    segments: SegmentsSection | None = None
     facade: FacadeSection | None = None
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None
@@ -174,6 +180,7 @@ class Project(Section):
 _SECTIONS = {
     "asymptotic": (
         *("umbrella", "profile", "joint", "facade", "bars", "shop", "flat", "papers", "motion"),
+        "segments",
     ),
     "planar": ("panels", "supports", "connector", "beams"),
 }

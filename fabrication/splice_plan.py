@@ -48,6 +48,7 @@ class SplicePlan:
     floor : no choice of splices can do with fewer bars.
     gap : between the ends of two pieces, mm.
     findings : splices of neighbours in one bay.
+    copies : how often all strips are built; splices are those of one copy, bars for all.
     """
 
     splices: Mapping[str, tuple[Place, ...]]
@@ -55,11 +56,12 @@ class SplicePlan:
     floor: int
     gap: float
     findings: tuple[Finding, ...] = field(default=())
+    copies: int = 1
 
     @property
     def count(self) -> int:
         """Number of splices."""
-        return sum(len(places) for places in self.splices.values())
+        return self.copies * sum(len(places) for places in self.splices.values())
 
 
 class Splices(Enum):

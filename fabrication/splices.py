@@ -156,7 +156,7 @@ def spliced(jointed: Jointed, plan: SplicePlan, plate: SplicePlate) -> Jointed:
         carriers=tuple(jointed.carriers[piece.strip] for piece in pieces),
         cuts=cuts,
         fixtures=tuple(fixtures),
-        bill=(*jointed.bill, *plate.bill(plan.count, profile.thickness)),
+        bill=(*jointed.bill, *plate.bill(plan.count // plan.copies, profile.thickness)),
         findings=(*jointed.findings, *plan.findings),
     )
 

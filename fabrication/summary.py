@@ -31,9 +31,12 @@ def _strips(report: Report) -> list[str]:
     strips = (
         "" if built["strips"] == built["lamellas"] else f" in {plural(built['strips'], 'strip')}"
     )
+    count = built.get("segments", 1)
+    segments = "" if count == 1 else f"{plural(count, 'equal segment')}, each of "
     raw = "bar" if "bars" in report["stock"] else "sheet"
     lines = [
-        f"{plural(built['lamellas'], 'lamella')}{strips}, {plural(built['joints'], 'joint')}, "
+        f"{segments}{plural(built['lamellas'], 'lamella')}{strips}, "
+        f"{plural(built['joints'], 'joint')}, "
         f"{length(built['total_length_m'])}, {mass(built['mass_kg'])} on "
         f"{plural(built['sheets'], raw)}; "
         f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",

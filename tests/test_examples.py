@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from collections import Counter
 from math import pi, radians, sqrt, tan
 from pathlib import Path
 
@@ -261,6 +262,27 @@ def test_the_canopy_s_slots_vary_with_the_node_angle(packages):
     assert min(float(row["slot_width_min_mm"]) for row in rows) < 2.75
     assert max(float(row["slot_width_max_mm"]) for row in rows) > 4.2
     assert report["stock"]["bars"]["splices_not_staggered"] == 0
+    assert report["segments"]["count"] == 4
+    assert report["segments"]["identical_mm"] < 1e-6
+    assert report["segments"]["seam_mm"]["min"] > 50.0
+    assert {row["quantity"] for row in rows} == {"4"}
+    drawn = Counter(p.mark for file in (out / "sheets").glob("bar-*") for p in fab.read_dxf(file))
+    assert set(drawn.values()) == {4}
+    assert len(drawn) == report["segments"]["distinct_parts"] == len(rows)
+    assert sum(1 for _ in (out / "hanging.csv").open()) == 101
+
+
+@pytest.mark.xdist_group("examples")
+def test_the_umbrella_is_made_of_tubes_and_moves(packages):
+    report, out = packages("18_umbrella")
+    assert report["structure"]["connectors"]["bolts"] == report["structure"]["nodes"] == 144
+    assert report["closure"]["holes"] == 2 * 144
+    assert report["motion"]["positions"] == 60
+    assert report["motion"]["edge_length_change"] < 1e-6
+    assert report["motion"]["star_planarity"] < 1e-6
+    assert report["motion"]["utilisation_max"] < 1.0
+    for name in ("motion.csv", "motion.glb", "motion.html", "drillings.csv", "bars.csv"):
+        assert (out / name).stat().st_size > 500
 
 
 @pytest.mark.xdist_group("examples")

@@ -41,7 +41,7 @@ class DxfPart:
 
 
 def read_dxf(path: Path | str, process: Process | None = None) -> tuple[DxfPart, ...]:
-    """Read the parts of a sheet back from the file.
+    """Read the parts of a sheet back from the file; equal parts may share a mark.
 
     Parameters
     ----------
@@ -61,20 +61,33 @@ def read_dxf(path: Path | str, process: Process | None = None) -> tuple[DxfPart,
         raise FileError("The sheet cannot be read", where=str(path), value=str(error)) from None
     if document.dxfversion > "AC1009" and document.units != units.MM:
         raise FileError("The sheet is not in mm", where=str(path), value=f"{document.units}")
-    contours: dict[str, Floats] = {}
-    holes: dict[str, list[tuple[float, float, float]]] = {}
+    contours: list[tuple[str, Floats]] = []
+    circles: list[tuple[str, tuple[float, float, float]]] = []
     for entity in document.modelspace():
         if process.layers.key(entity.dxf.layer) not in ("cut", "drill"):
             continue
         mark = _mark(path, entity)
         if isinstance(entity, Circle):
             x, y, _ = entity.dxf.center
-            holes.setdefault(mark, []).append((x, y, 2.0 * (entity.dxf.radius + process.offset)))
+            circles.append((mark, (x, y, 2.0 * (entity.dxf.radius + process.offset))))
         else:
-            contours[mark] = moved_out(_contour(path, entity), -process.offset)
-    if stray := sorted(holes.keys() - contours.keys()):
-        raise FileError("A hole lies in no part", where=f"{path}, {stray[0]}")
-    return tuple(_part(mark, contour, holes.get(mark, ())) for mark, contour in contours.items())
+            contours.append((mark, moved_out(_contour(path, entity), -process.offset)))
+    holes: list[list[tuple[float, float, float]]] = [[] for _ in contours]
+    for mark, circle in circles:
+        around = [
+            k for k, (name, rows) in enumerate(contours) if name == mark and _holds(rows, circle)
+        ]
+        if not around:
+            raise FileError("A hole lies in no part", where=f"{path}, {mark}")
+        holes[around[0]].append(circle)
+    return tuple(_part(*named, own) for named, own in zip(contours, holes, strict=True))
+
+
+def _holds(contour: Floats, circle: tuple[float, float, float]) -> bool:
+    """Whether a circle's middle lies in the box of an outline: parts of one mark lie apart."""
+    low, high = contour[:, :2].min(axis=0), contour[:, :2].max(axis=0)
+    middle = np.array(circle[:2])
+    return bool((low <= middle).all() and (middle <= high).all())
 
 
 def _part(mark: str, contour: Floats, holes: Sequence[tuple[float, float, float]]) -> DxfPart:

@@ -19,6 +19,9 @@ from gridshell.arrays import Indices, Mask
 _TOUCH = 1e-3
 """How far a part may lie over the edge of its sheet: rounding, mm."""
 
+_ALIKE = 0.02
+"""Parts of one mark whose ways around agree so well are equal ones, mm."""
+
 _ROUND = 0.995
 """4 pi area / perimeter squared above which a contour is a circle."""
 
@@ -168,13 +171,14 @@ def _hits(tree: shapely.STRtree, lines: np.ndarray, predicate: str) -> Mask:
 
 
 def _same_mark(parts: DrawnParts) -> Iterator[Finding]:
-    """Parts that say they are the same one."""
+    """Parts that say they are the same one and are not equal."""
     by: dict[str, list[int]] = defaultdict(list)
     for k in parts.outer.tolist():
         if parts.contours[k].mark and not parts.contours[k].diameter:
             by[parts.contours[k].mark].append(k)
     for mark, several in by.items():
-        if len(several) > 1:
+        around = shapely.length(parts.shapes[several])
+        if len(several) > 1 and float(np.ptp(around)) > _ALIKE:
             message = f"{len(several)} parts are called {mark}. Delete all but one, or rename them."
             count = float(len(several))
             yield Finding("duplicate-part", Severity.ERROR, mark, count, 1.0, "", message)

@@ -30,6 +30,7 @@ from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
 from fabrication.jointed import Jointed
 from fabrication.nesting import NestedSheet
+from fabrication.outlines import Frame
 from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress, bay_stress
@@ -48,6 +49,7 @@ def write_report(
     clearance: float | None = None,
     facade: PanelStructure | None = None,
     pictures: Sequence[Mapping[str, Any]] = (),
+    copies: Sequence[Frame] = (),
 ) -> None:
     """Write the page.
 
@@ -62,6 +64,7 @@ def write_report(
     clearance : of the slots, mm; None leaves it out.
     facade : panels above the strips, where there are any.
     pictures : of the way from the surface to the net, see ``stages``.
+    copies : where else the shell stands, drawn as lines.
 
     Raises
     ------
@@ -75,7 +78,7 @@ def write_report(
         name=name,
         report=report,
         pictures=pictures,
-        figure=_figure(jointed, parts, stress, facade),
+        figure=_figure(jointed, parts, stress, facade, copies),
         shades=_json({"scale": colour_scale(), "shades": shades(stress)}),
         scale=colour_scale(),
         stress=stress_section(stress),
@@ -104,10 +107,14 @@ def write_report(
 
 
 def _figure(
-    jointed: Jointed, parts: Sequence[FlatPart], stress: BayStress, facade: PanelStructure | None
+    jointed: Jointed,
+    parts: Sequence[FlatPart],
+    stress: BayStress,
+    facade: PanelStructure | None,
+    copies: Sequence[Frame],
 ) -> Any:
     """Strips and connectors, and the panels above them: hidden until they are asked for."""
-    figure = shell_figure(jointed, parts, stress)
+    figure = shell_figure(jointed, parts, stress, copies)
     positions = np.array([node.position for node in jointed.design.nodes])
     centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
     figure.add_traces(connector_traces(jointed.connectors, centre))

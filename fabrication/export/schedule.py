@@ -76,8 +76,11 @@ def write_schedule(
     OutputError
         When the file cannot be written.
     """
-    sheet_of = {p.part.mark: sheet.number for sheet in sheets for p in sheet.placements}
-    rows = [_row(part, material, sheet_of.get(part.mark, "")) for part in parts]
+    on: dict[str, list[int]] = {}
+    for sheet in sheets:
+        for mark in {placement.part.mark for placement in sheet.placements}:
+            on.setdefault(mark, []).append(sheet.number)
+    rows = [_row(part, material, " ".join(map(str, on.get(part.mark, [])))) for part in parts]
     rows += [_more(line) for line in more]
     write_csv(path, "The cut list", [COLUMNS, *rows])
 
@@ -140,11 +143,11 @@ def six_digits(value: float) -> str:
     return np.format_float_positional(value, precision=6, fractional=False, trim="-")
 
 
-def _row(part: FlatPart, material: Material, sheet: int | str) -> list[str | int]:
+def _row(part: FlatPart, material: Material, sheet: str) -> list[str | int]:
     widths = [slot.width for slot in part.slots]
     return [
         part.mark,
-        1,
+        part.quantity,
         f"{part.length:.2f}",
         f"{part.width:g}",
         f"{part.thickness:g}",

@@ -20,6 +20,7 @@ from fabrication.cut import Edge, Floor, Slot
 from fabrication.export.words import fixed, plural
 from fabrication.jointed import Jointed
 from fabrication.lamella import Lamella
+from fabrication.outlines import Frame
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress
 from fabrication.structures import Structure
@@ -118,7 +119,12 @@ def _depth(slot: Slot) -> float:
     return float(slot.depth + rounded)
 
 
-def shell_figure(jointed: Jointed, parts: Sequence[FlatPart], stress: BayStress) -> Any:
+def shell_figure(
+    jointed: Jointed,
+    parts: Sequence[FlatPart],
+    stress: BayStress,
+    copies: Sequence[Frame] = (),
+) -> Any:
     """The shell as few traces: per family a mesh and its outlines; marks, nodes and axes.
 
     Strips are those that are built, marks and nodes those of the design.
@@ -127,6 +133,7 @@ def shell_figure(jointed: Jointed, parts: Sequence[FlatPart], stress: BayStress)
     ----------
     parts : one per strip.
     stress : of all bays of the strips; a mesh's *meta* says which triangles lie in which bay.
+    copies : where else the shell stands; the axes of its strips are drawn there.
     """
     design, strips = jointed.design, jointed.strips
     positions = np.array([node.position for node in design.nodes])
@@ -140,8 +147,11 @@ def shell_figure(jointed: Jointed, parts: Sequence[FlatPart], stress: BayStress)
         ]
         traces += _family(family, meshes, centre) if meshes else []
     traces.append(_marks(design, centre))
+    if copies:
+        traces.append(_copies(strips, copies, centre))
     placed = [np.stack([t.x, t.y, t.z], axis=1) for t in traces if t.x is not None]
     points = np.concatenate(placed).astype(np.float64)
+    points = points[np.isfinite(points).all(axis=1)]
     traces += [_nodes(design, centre), axes_figure(points)]
     return go.Figure(traces, {"template": "none", "scene": {"camera": camera(points)}})
 
@@ -191,6 +201,25 @@ def _runs(bays: Indices) -> dict[str, list[int]]:
     starts = np.flatnonzero(np.r_[True, np.diff(bays) != 0])
     lengths = np.diff(np.r_[starts, len(bays)])
     return {"bays": bays[starts].tolist(), "triangles": lengths.tolist()}
+
+
+def _copies(strips: Structure, copies: Sequence[Frame], centre: Floats) -> Any:
+    """The axes of all strips in the other segments, as one line with gaps."""
+    gap = np.full((1, 3), np.nan)
+    lines = []
+    for strip in strips.lamellas:
+        s = np.linspace(strip.start, strip.end, 2 * len(strip.stations) + 1)
+        points = strip.place(s, np.zeros_like(s), np.zeros_like(s))
+        for frame in copies:
+            turn = np.stack([frame.x, frame.y, frame.normal], axis=1)
+            lines += [points @ turn.T + frame.origin, gap]
+    return go.Scatter3d(
+        **xyz(on_screen(np.concatenate(lines), centre)),
+        mode="lines",
+        name="Other segments",
+        line={"color": _QUIET, "width": 1.5},
+        hoverinfo="skip",
+    )
 
 
 def _marks(structure: Structure, centre: Floats) -> Any:

@@ -34,6 +34,9 @@ from fabrication.prisms import prism
 from fabrication.shapes import Bodies, Colour
 from fabrication.structures import Structure
 
+SEGMENT = "segment"
+"""Name of what is there several times, and of every occurrence before its number."""
+
 
 @dataclass(frozen=True, eq=False)
 class SolidKind:
@@ -71,12 +74,14 @@ def write_assembly(
     name: str,
     strips: Sequence[SolidKind] = (),
     bodies: Bodies | None = None,
+    poses: Sequence[Frame] = (),
     written: datetime | None = None,
 ) -> None:
     """Write strips and bodies as an assembly called *name*, mm.
 
     Parameters
     ----------
+    poses : where copies of it all lie, "segment-1" and so on; none for the one at its own place.
     written : the time stamp, as for ``write_step``.
 
     Raises
@@ -89,7 +94,7 @@ def write_assembly(
     quiet()
     path = Path(path)
     bodies = Bodies((), ()) if bodies is None else bodies
-    document = _document(strips, bodies)
+    document = _document(strips, bodies, poses)
     writer = STEPCAFControl_Writer()
     writer.SetColorMode(True)
     writer.SetNameMode(True)
@@ -102,7 +107,7 @@ def write_assembly(
     sign(path, name, f"Gridshell: {kinds}", written)
 
 
-def _document(strips: Sequence[SolidKind], bodies: Bodies) -> Any:
+def _document(strips: Sequence[SolidKind], bodies: Bodies, poses: Sequence[Frame]) -> Any:
     """The kernel's document: shapes, assemblies and occurrences, named and coloured."""
     document = TDocStd_Document(_text("XmlOcaf"))
     XCAFApp_Application.GetApplication_s().NewDocument(_text("MDTV-XCAF"), document)
@@ -111,6 +116,10 @@ def _document(strips: Sequence[SolidKind], bodies: Bodies) -> Any:
     colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
     whole = tool.NewShape()
     TDataStd_Name.Set_s(whole, _text(PLACEHOLDER))
+    root = whole
+    if poses:
+        whole = tool.NewShape()
+        TDataStd_Name.Set_s(whole, _text(SEGMENT))
     for strip_kind in strips:
         group = _group(tool, whole, strip_kind.name)
         for mark, solid in strip_kind.solids.items():
@@ -127,6 +136,9 @@ def _document(strips: Sequence[SolidKind], bodies: Bodies) -> Any:
                 labels[body.shape] = _product(tool, colours, prism(shape), title, kind.colour)
             placed = tool.AddComponent(group, labels[body.shape], _location(body.frame))
             TDataStd_Name.Set_s(placed, _text(body.mark))
+    for number, pose in enumerate(poses, start=1):
+        placed = tool.AddComponent(root, whole, _location(pose))
+        TDataStd_Name.Set_s(placed, _text(f"{SEGMENT}-{number}"))
     tool.UpdateAssemblies()
     return document
 

@@ -81,6 +81,34 @@ def read_prisms(path: Path | str) -> tuple[StepPrism, ...]:
         ) from None
 
 
+@dataclass(frozen=True, eq=False)
+class StepCopy:
+    """An occurrence of an assembly: x -> turn x + shift, mm.
+
+    Parameters
+    ----------
+    name : of the occurrence.
+    """
+
+    name: str
+    turn: Floats
+    shift: Floats
+
+
+def read_copies(path: Path | str, name: str) -> tuple[StepCopy, ...]:
+    """Where the occurrences of the assembly called *name* lie, in the file's order.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be read.
+    """
+    try:
+        return tuple(_Model(Path(path).read_bytes()).copies(name))
+    except (OSError, KeyError, ValueError, IndexError) as error:
+        raise FileError("The STEP file cannot be read", where=str(path), value=str(error)) from None
+
+
 class _Model:
     """The entities of a file by their numbers, as they are written."""
 
@@ -114,6 +142,14 @@ class _Model:
             yield StepPrism(
                 self._names(number)[1], self._names(self._refs(formation)[0])[0], low, high
             )
+
+    def copies(self, name: str) -> Iterator[StepCopy]:
+        """Occurrences of the product called *name*."""
+        places = dict(self._places())
+        for number in self.kind.get(b"NEXT_ASSEMBLY_USAGE_OCCURRENCE", []):
+            formation = self._refs(self._refs(number)[1])[0]
+            if self._names(self._refs(formation)[0])[0] == name:
+                yield StepCopy(self._names(number)[1], *places[number])
 
     def _refs(self, number: int) -> list[int]:
         return [int(n) for n in _NUMBER.findall(self.text[number])]

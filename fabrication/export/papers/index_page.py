@@ -33,14 +33,19 @@ def index_page(
 ) -> Page:
     """Counts, the list of sheets, and what is not checked."""
     profile = jointed.design.profile
-    mass = sum(part.volume for part in parts) * profile.material.density * 1e-9
+    count = parts[0].quantity if parts else 1
+    mass = sum(part.quantity * part.volume for part in parts) * profile.material.density * 1e-9
     connectors = sum(len(kind.bodies) for kind in jointed.connectors)
-    facts = (
+    facts: tuple[str, ...] = (
         f"{len(jointed.design.lamellas)} lamellas, {len(jointed.design.nodes)} nodes",
         f"{len(parts)} strips of {profile.size} mm, "
-        f"{profile.material.name}: {sum(p.length for p in parts) / 1e3:.1f} m, {mass:.1f} kg",
+        f"{profile.material.name}: {sum(p.quantity * p.length for p in parts) / 1e3:.1f} m, "
+        f"{mass:.1f} kg",
         f"{connectors} connectors",
     )
+    if count > 1:
+        told = f"{count} equal segments: plans and nodes show one of them, strips tell how many"
+        facts = (*facts, f"{told}; metres and mass are those of all")
 
     def draw(pen: Pen, area: Area) -> None:
         x, y = area.x + 12.0, area.y + area.height - 22.0

@@ -40,7 +40,8 @@ def write_labels(
     path = Path(path)
     canvas = Canvas(str(path), pagesize=A4, invariant=1)
     canvas.setTitle(f"{name}: labels")
-    for k, part in enumerate(parts):
+    every = [part for part in parts for _ in range(part.quantity)]
+    for k, part in enumerate(every):
         place = k % (_COLUMNS * _ROWS)
         if k and not place:
             canvas.showPage()

@@ -22,6 +22,7 @@ from fabrication.export.papers.sheet_frame import (
     page_area,
     text_width,
 )
+from fabrication.export.words import plural
 from fabrication.flattening import corners
 from fabrication.jointed import Jointed
 from fabrication.parts import FlatPart, uncut_nodes
@@ -157,7 +158,7 @@ def _draw(
     pen.text(
         x + 4.0 + text_width(part.mark, 4.0, bold=True),
         top - 5.0,
-        f"1 piece   {part.length:.1f} x {_section(part)} mm   "
+        f"{plural(part.quantity, 'piece')}   {part.length:.1f} x {_section(part)} mm   "
         f"{material.name}   {mass:.3g} kg   {_depths(part)}{more}",
     )
     base = top - _HEAD - _ABOVE - part.width / across
