@@ -22,6 +22,7 @@ from .connector_pieces import StarSpec as StarSpec
 from .coupon import Coupon as Coupon
 from .coupon import coupon as coupon
 from .cut import Drill as Drill
+from .cut import Edge as Edge
 from .cut import Relief as Relief
 from .cutting_stock import cut_bars as cut_bars
 from .export.assembly_schedule import write_assembly as write_assembly
@@ -83,6 +84,8 @@ from .materials import S235 as S235
 from .materials import S355 as S355
 from .materials import STAINLESS as STAINLESS
 from .materials import Material as Material
+from .motion import Motion as Motion
+from .motion import motion as motion
 from .nesting import NestedSheet as NestedSheet
 from .nesting import nest as nest
 from .node import Node as Node
@@ -104,6 +107,10 @@ from .parts import parts_of as parts_of
 from .project import project_text as project_text
 from .project import read_project as read_project
 from .sections import Project as Project
+from .segment_checks import Seam as Seam
+from .segment_checks import seam_of as seam_of
+from .segments import Segments as Segments
+from .segments import hanging as hanging
 from .shapes import Bodies as Bodies
 from .shear_blocks import ShearBlock as ShearBlock
 from .sheet_parts import panel_piece as panel_piece

@@ -12,6 +12,13 @@ NodeAngle = Annotated[Number, Field(gt=0.0, lt=180.0)]
 Point = tuple[Place, Place, Place]
 
 
+class MirrorSection(Section):
+    """A plane that the net is symmetric about: a point of it, mm, and its normal."""
+
+    point: Point = (0.0, 0.0, 0.0)
+    normal: Point
+
+
 class RadialAngleSection(Section):
     """An angle that changes with the distance from a centre, mm."""
 

@@ -16,7 +16,7 @@ from fabrication.angle_sections import (
     RadialAngleSection,
     SampledAngleSection,
 )
-from fabrication.placing import placed
+from fabrication.placing import keyed, placed
 from fabrication.remesh_settings import require_file
 from fabrication.sections import NetSection, Project
 from gridshell.arrays import Floats
@@ -51,14 +51,18 @@ def angle_of(choice: Choice, folder: Path) -> gs.Angle | None:
     return radians(choice)
 
 
-def conditions_of(net: NetSection) -> tuple[gs.AngleBetween | gs.NearRhombi, ...]:
+def conditions_of(net: NetSection) -> tuple[gs.Condition, ...]:
     """The conditions of ``[net]`` on an asymptotic net besides its angle."""
-    found: list[gs.AngleBetween | gs.NearRhombi] = []
+    found: list[gs.Condition] = []
     if net.angle_between is not None:
         low, high = map(radians, net.angle_between)
         found.append(gs.AngleBetween(low, high))
     if net.near_rhombi:
         found.append(gs.NearRhombi())
+    if net.mirror is not None:
+        point, normal = np.array(net.mirror.point), np.array(net.mirror.normal)
+        with keyed("mirror"):
+            found.append(gs.MirrorPlane(point, normal))
     return tuple(found)
 
 

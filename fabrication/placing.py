@@ -17,9 +17,10 @@ def placed(path: Path, section: str) -> Iterator[None]:
         yield
     except gs.InputError as error:
         at = error.where or ""
+        joint = "." if at.replace(".", "").isidentifier() else ": "
         raise ProjectError(
             error.what,
-            where=f"{path}, {section}.{at}" if at.isidentifier() else f"{path}, {section}: {at}",
+            where=f"{path}, {section}{joint}{at}",
             value=error.value,
             limit=error.limit,
             advice=error.advice,

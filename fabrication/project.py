@@ -17,7 +17,7 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
-from fabrication.angle_sections import ANGLE_CHOICES, FieldSection
+from fabrication.angle_sections import ANGLE_CHOICES, FieldSection, MirrorSection
 from fabrication.angle_settings import require_angle
 from fabrication.errors import ProjectError
 from fabrication.joint_sections import (
@@ -220,6 +220,7 @@ def _sections() -> dict[str, type[Section]]:
         "splice": SpliceSection,
         "flat": FlatSection,
         "umbrella": UmbrellaSection,
+        "mirror": MirrorSection,
         "motion": MotionSection,
         "segments": SegmentsSection,
         "papers": PapersSection,

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from fabrication.angle_sections import AngleChoice, NodeAngle, Point
+from fabrication.angle_sections import AngleChoice, MirrorSection, NodeAngle, Point
 from fabrication.joint_sections import JointSection
 from fabrication.lamella_sections import (
     BarsSection,
@@ -59,6 +59,9 @@ class NetSection(Section):
         tuple[NodeAngle, NodeAngle] | None, Field(description="any, of asymptotic nets only")
     ] = None
     near_rhombi: bool = False
+    mirror: Annotated[
+        MirrorSection | None, Field(description="no symmetry, of asymptotic nets only")
+    ] = None
     rhombus: bool = False
     square: bool = False
     anchor: Literal["free", "boundary-pinned", "boundary-glide", "supports"]
@@ -209,7 +212,7 @@ def _foreign(project: Project) -> Iterator[InitErrorDetails]:
     if project.net.supports is not None and not held:
         yield _mistake(("net", "supports"), f"anchor = '{project.net.anchor}'", "anchor 'supports'")
     if kind == "planar":
-        for name in ("angle_between", "near_rhombi"):
+        for name in ("angle_between", "near_rhombi", "mirror"):
             if getattr(project.net, name):
                 yield _mistake(("net", name), "net.kind = 'planar'", "net.kind = 'asymptotic' only")
         return

@@ -24,6 +24,7 @@ from .coarse_to_fine import coarser as coarser
 from .coarse_to_fine import finer as finer
 from .coarse_to_fine import optimize_coarse_to_fine as optimize_coarse_to_fine
 from .conditions import AngleBetween as AngleBetween
+from .conditions import Condition as Condition
 from .conditions import EdgeLengths as EdgeLengths
 from .conditions import FlatRim as FlatRim
 from .conditions import MirrorPlane as MirrorPlane

@@ -15,6 +15,7 @@ from fabrication.gallery.scenery import edges, lamella_faces, seen_from
 from gridshell.arrays import Floats, Indices, Points
 
 UMBRELLA = gs.Umbrella(ribs=16, radius=1000.0, bays=(400.0,) * 8)
+TUBE = fab.HollowProfile(40.0, 14.0, fab.GRP, wall=2.0)
 CABLE = gs.Cable(0, 8)
 POSITIONS = 60
 _RANGE = (0.05, 0.95)
@@ -57,12 +58,20 @@ def figure() -> Figure:
             Condition("star planarity", max(largest(s.star_planarity) for s in stars), 1e-6),
             Condition("solver off the recursion, mm", max(off), 1e-3),
             Condition("seconds for 60 positions", seconds, 10.0),
+            Condition("hinges: clash, mm3", _clash(), 1e-3),
         ),
         scenes=tuple(
             Scene(f"{name}: {100.0 * o:.0f} % open", _layers(o), seen_from(0.3, -1.0, 0.3))
             for name, o in (("Closed", 0.06), ("Half way", 0.4), ("Funnel", 0.85))
         ),
     )
+
+
+def _clash() -> float:
+    """Of tubes and pins, half way."""
+    net = gs.diagonal_meshes(UMBRELLA.position(0.4).control())[0]
+    jointed = fab.HingedJoint(6.0).build(fab.structure(net, TUBE))
+    return fab.fit(jointed.strips, fab.parts_of(jointed), jointed.connectors).max_mm3
 
 
 def _nodes(position: gs.Position) -> Points:
@@ -87,6 +96,6 @@ def _cables(nodes: Points, position: gs.Position) -> tuple[Indices, Indices]:
 def _layers(opening: float) -> tuple[Layer, ...]:
     position = UMBRELLA.position(opening)
     net = gs.diagonal_meshes(position.control())[0]
-    built = fab.structure(net, fab.Profile(50.0, 4.0, fab.GRP))
+    built = fab.structure(net, TUBE)
     _, cables = _cables(net.vertices, position)
     return (*lamella_faces(built), edges(net.vertices, cables, (0.2, 0.2, 0.2), 0.6))

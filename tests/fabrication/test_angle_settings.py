@@ -105,6 +105,8 @@ def test_what_is_printed_can_be_read(project, net):
         ),
         (SAMPLES + 'file = "none.csv", unit = "m" }', "net.angle.file", "folder"),
         ("angle_between = [90.0, 60.0]", "net.angle_between", "smaller first"),
+        ("mirror = { normal = [0, 0, 0] }", "net.mirror.normal", "direction"),
+        ("mirror = { norma = [1, 0, 0] }", "net.mirror.norma", "'normal'"),
         ("supports = [[0, 0, 0], [1, 0, 0]]", "net.supports", "anchor 'supports'"),
     ],
 )
@@ -113,6 +115,24 @@ def test_angles_that_cannot_be_used_name_the_key(project, net, where, told):
         read_project(project(net))
     assert f", {where}" in str(info.value)
     assert told in str(info.value)
+
+
+def test_symmetry_is_kept_where_there_is_one_and_refused_where_there_is_none(project, tmp_path):
+    from contextlib import nullcontext
+
+    from fabrication.package import optimised, route_of
+    from fabrication.starts import start
+
+    def solved(normal):
+        content = read_project(project(f"angle = 80.0\nmirror = {{ normal = {normal} }}"))
+        begun = start(content, tmp_path, lambda name: nullcontext())
+        return optimised(content, route_of(content).recipe(tmp_path), begun)
+
+    found = solved([0, 1, 0]).require().control.vertices
+    image = found * [1.0, -1.0, 1.0]
+    assert np.linalg.norm(found[:, None] - image[None], axis=2).min(axis=1).max() < 1e-4
+    with pytest.raises(gs.SettingError, match="no mirror image"):
+        solved([1, 2, 0])
 
 
 @pytest.mark.parametrize("text", ["0,0,90\n", "0,0,0,90\n1,2,x,80\n", "0,0,0,90,1\n"])

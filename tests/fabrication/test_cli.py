@@ -113,7 +113,7 @@ def test_check_lists_every_setting_with_its_value(command, write):
     lines = set(out.splitlines())
     assert {'name = "small"', "[net]", "[joint]", "clearance = 0.3", "p = [-0.2, 0.2]"} <= lines
     unset = {line.split()[1] for line in lines if line.startswith("#")}
-    assert unset == {"angle", "angle_between", "overhang", "supports", "wall"}
+    assert unset == {"angle", "angle_between", "mirror", "overhang", "supports", "wall"}
 
 
 def test_what_check_says_is_a_project_that_says_the_same(command, write, tmp_path):

@@ -206,9 +206,9 @@ def test_a_project_that_is_written_and_read_is_the_same(read, beside, changes):
 @pytest.mark.parametrize(
     ("changes", "keys"),
     [
-        ({}, ["angle", "angle_between", "overhang", "supports", "wall"]),
-        (RING, ["angle", "angle_between", "overhang", "supports", "u", "wall"]),
-        (FULL, ["angle_between", "supports", "wall"]),
+        ({}, ["angle", "angle_between", "mirror", "overhang", "supports", "wall"]),
+        (RING, ["angle", "angle_between", "mirror", "overhang", "supports", "u", "wall"]),
+        (FULL, ["angle_between", "mirror", "supports", "wall"]),
     ],
 )
 def test_what_is_unset_is_written_as_a_comment(read, changes, keys):
