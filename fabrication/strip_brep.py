@@ -26,34 +26,16 @@ from fabrication.brep_geometry import (
     side_surface,
     wall_planes,
 )
+from fabrication.brep_pieces import BrepPieces, poles
 from fabrication.errors import KernelError
 from fabrication.sides import Side
 from fabrication.strip_loops import DEGREE, Loop, Piece, Run, arc_images
-from gridshell.arrays import Floats
 
 try:
-    from OCP.BRep import BRep_Builder
-    from OCP.Geom import Geom_BSplineCurve, Geom_Line
-    from OCP.Geom2d import Geom2d_Circle, Geom2d_Line
-    from OCP.gp import gp_Ax22d, gp_Circ2d, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
-    from OCP.TColgp import TColgp_Array1OfPnt
-    from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
-    from OCP.TopLoc import TopLoc_Location
-    from OCP.TopoDS import (
-        TopoDS,
-        TopoDS_Edge,
-        TopoDS_Face,
-        TopoDS_Shell,
-        TopoDS_Solid,
-        TopoDS_Vertex,
-        TopoDS_Wire,
-    )
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Solid, TopoDS_Vertex, TopoDS_Wire
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError(
-        "The CAD kernel cannot be loaded",
-        value=str(error),
-        advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
-    ) from error
+    raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
 
 
 def strip_brep(sides: tuple[Side, Side], thickness: float, loops: Sequence[Loop]) -> TopoDS_Solid:
@@ -61,12 +43,11 @@ def strip_brep(sides: tuple[Side, Side], thickness: float, loops: Sequence[Loop]
     return _Builder(sides, thickness, loops).solid()
 
 
-class _Builder:
+class _Builder(BrepPieces):
     """Makes the shared vertices, edges and faces of one strip."""
 
     def __init__(self, sides: tuple[Side, Side], thickness: float, loops: Sequence[Loop]) -> None:
         self.thickness, self.loops = thickness, loops
-        self.tool = BRep_Builder()
         self.surfaces = [side_surface(side) for side in sides]
         self.corners = [
             [
@@ -83,54 +64,32 @@ class _Builder:
         self.shares, self.counts = shares.tolist(), counts.tolist()
         self.planes, planar = wall_planes(loops, self.corners, thickness)
         astray = max(bevel_sag(sides, loops[0]), self.images.off if self.images else 0.0)
-        self.tolerance = max(TOLERANCE, planar, 2.0 * astray)
+        super().__init__(max(TOLERANCE, planar, 2.0 * astray))
 
     def solid(self) -> TopoDS_Solid:
         """Sides first, then the walls in the order of the loops."""
         walls: list[TopoDS_Face] = []
         wires: tuple[list[TopoDS_Wire], list[TopoDS_Wire]] = ([], [])
         for number, loop in enumerate(self.loops):
-            vertices = [[self._vertex(p) for p in side] for side in self.corners[number]]
+            vertices = [[self.vertex(p) for p in side] for side in self.corners[number]]
             across = [self._across(number, i, vertices) for i in range(len(loop.pieces))]
             rims = [
                 [self._rim(number, k, piece, vertices[k]) for piece in loop.pieces] for k in (0, 1)
             ]
             for k in (0, 1):
                 wires[k].append(
-                    self._wire([(e, p.forward) for e, p in zip(rims[k], loop.pieces, strict=True)])
+                    self.wire([(e, p.forward) for e, p in zip(rims[k], loop.pieces, strict=True)])
                 )
             for i, piece in enumerate(loop.pieces):
                 near, far = rims[0][i], rims[1][i]
                 low, high = across[piece.first], across[piece.last]
                 surface = self._wall(number, i, piece, (near, far, low, high))
-                wire = self._wire([(near, True), (high, True), (far, False), (low, False)])
-                walls.append(self._face(surface, [wire], forward=piece.forward))
-        sides = [self._face(self.surfaces[k], wires[k], forward=k == 1) for k in (0, 1)]
-        return self._close([*sides, *walls])
+                wire = self.wire([(near, True), (high, True), (far, False), (low, False)])
+                walls.append(self.face(surface, [wire], forward=piece.forward))
+        sides = [self.face(self.surfaces[k], wires[k], forward=k == 1) for k in (0, 1)]
+        return self.close([*sides, *walls])
 
     # ---- vertices and edges --------------------------------------------------------------------
-
-    def _vertex(self, point: Floats) -> TopoDS_Vertex:
-        vertex = TopoDS_Vertex()
-        self.tool.MakeVertex(vertex, gp_Pnt(*point.tolist()), self.tolerance)
-        return vertex
-
-    def _edge(
-        self, curve: Any, first: TopoDS_Vertex, last: TopoDS_Vertex, low: float, high: float
-    ) -> TopoDS_Edge:
-        edge = TopoDS_Edge()
-        self.tool.MakeEdge(edge, curve, self.tolerance)
-        self.tool.Add(edge, first.Oriented(TopAbs_FORWARD))
-        self.tool.Add(edge, last.Oriented(TopAbs_REVERSED))
-        self.tool.Range(edge, low, high)
-        return edge
-
-    def _straight(
-        self, a: Floats, b: Floats, first: TopoDS_Vertex, last: TopoDS_Vertex
-    ) -> TopoDS_Edge:
-        start, end = gp_Pnt(*a.tolist()), gp_Pnt(*b.tolist())
-        line = Geom_Line(start, gp_Dir(gp_Vec(start, end)))
-        return self._edge(line, first, last, 0.0, start.Distance(end))
 
     def _across(
         self, number: int, i: int, vertices: Sequence[Sequence[TopoDS_Vertex]]
@@ -146,13 +105,11 @@ class _Builder:
         rows = self.loops[number].rows
         run = float(rows[1, i, 0] - rows[0, i, 0])
         if abs(run) < SQUARE:
-            return self._straight(a, b, first, last)
+            return self.straight(a, b, first, last)
         length = float(np.hypot(self.thickness, run))
-        poles = TColgp_Array1OfPnt(1, 2)
-        poles.SetValue(1, gp_Pnt(*a.tolist()))
-        poles.SetValue(2, gp_Pnt(*b.tolist()))
-        line = Geom_BSplineCurve(poles, *knots((0.0, length), (2, 2)), 1)
-        return self._edge(line, first, last, 0.0, length)
+        ends = poles(np.stack([a, b]))
+        line = Geom_BSplineCurve(ends, *knots((0.0, length), (2, 2)), 1)
+        return self.edge(line, first, last, 0.0, length)
 
     def _rim(
         self, number: int, k: int, piece: Piece, vertices: Sequence[TopoDS_Vertex]
@@ -162,19 +119,16 @@ class _Builder:
         low, high, at = piece.low[k], piece.high[k], piece.at[k]
         if piece.run is Run.ACROSS:
             corners = self.corners[number][k]
-            edge = self._straight(corners[piece.first], corners[piece.last], first, last)
-            self._trace(edge, self.surfaces[k], (at, low), (0.0, 1.0))
+            edge = self.straight(corners[piece.first], corners[piece.last], first, last)
+            self.trace(edge, self.surfaces[k], (at, low), (0.0, 1.0))
         elif piece.run is Run.ALONG:
             curve = self.surfaces[k].VIso(at)
             curve.Segment(low, high)
-            edge = self._edge(curve, first, last, low, high)
-            self._trace(edge, self.surfaces[k], (0.0, at), (1.0, 0.0))
+            edge = self.edge(curve, first, last, low, high)
+            self.trace(edge, self.surfaces[k], (0.0, at), (1.0, 0.0))
         else:
-            edge = self._edge(self._arc_curve(piece, k), first, last, low, high)
-            axes = gp_Ax22d(gp_Pnt2d(*piece.centre), gp_Dir2d(1.0, 0.0), gp_Dir2d(0.0, 1.0))
-            circle = Geom2d_Circle(gp_Circ2d(axes, at))
-            surface, here = self.surfaces[k], TopLoc_Location()
-            self.tool.UpdateEdge(edge, circle, surface, here, self.tolerance)
+            edge = self.edge(self._arc_curve(piece, k), first, last, low, high)
+            self.ring(edge, self.surfaces[k], piece.centre, at)
         return edge
 
     def _arc_curve(self, piece: Piece, k: int) -> Geom_BSplineCurve:
@@ -184,25 +138,11 @@ class _Builder:
             images = self.images
             if images is None:
                 raise AssertionError("an outline without arcs has no images of arcs")
-            poles = images.poles[self.number[id(piece)], k]
-            array = TColgp_Array1OfPnt(1, len(poles))
-            for i, (x, y, z) in enumerate(poles.tolist(), start=1):
-                array.SetValue(i, gp_Pnt(x, y, z))
+            array = poles(images.poles[self.number[id(piece)], k])
             low, high = piece.low[0], piece.high[0]
             values = [low + (high - low) * share for share in self.shares]
             self.curves[key] = Geom_BSplineCurve(array, *knots(values, self.counts), DEGREE)
         return self.curves[key]
-
-    def _trace(
-        self,
-        edge: TopoDS_Edge,
-        surface: Any,
-        origin: tuple[float, float],
-        direction: tuple[float, float],
-    ) -> None:
-        """Give *edge* its line in the parameters of *surface*."""
-        line = Geom2d_Line(gp_Pnt2d(*origin), gp_Dir2d(*direction))
-        self.tool.UpdateEdge(edge, line, surface, TopLoc_Location(), self.tolerance)
 
     # ---- faces ---------------------------------------------------------------------------------
 
@@ -234,34 +174,8 @@ class _Builder:
         else:
             curves = [self._arc_curve(piece, k) for k in (0, 1)]
             surface = ruled_surface(curves[0], curves[1], depth)
-        self._trace(near, surface, (0.0, 0.0), (1.0, 0.0))
-        self._trace(far, surface, (0.0, depth), (1.0, 0.0))
+        self.trace(near, surface, (0.0, 0.0), (1.0, 0.0))
+        self.trace(far, surface, (0.0, depth), (1.0, 0.0))
         for edge, place in ((low, starts), (high, ends)):
-            self._trace(edge, surface, (place[0], 0.0), (place[1] - place[0], depth))
+            self.trace(edge, surface, (place[0], 0.0), (place[1] - place[0], depth))
         return surface
-
-    def _wire(self, edges: Sequence[tuple[TopoDS_Edge, bool]]) -> TopoDS_Wire:
-        wire = TopoDS_Wire()
-        self.tool.MakeWire(wire)
-        for edge, forward in edges:
-            self.tool.Add(wire, edge.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
-        wire.Closed(True)
-        return wire
-
-    def _face(self, surface: Any, wires: Sequence[TopoDS_Wire], *, forward: bool) -> TopoDS_Face:
-        """Side 0 (+t/2) faces along b against its natural normal, side 1 with it."""
-        face = TopoDS_Face()
-        self.tool.MakeFace(face, surface, TOLERANCE)
-        for wire in wires:
-            self.tool.Add(face, wire)
-        return face if forward else TopoDS.Face_s(face.Reversed())
-
-    def _close(self, faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:
-        shell, solid = TopoDS_Shell(), TopoDS_Solid()
-        self.tool.MakeShell(shell)
-        for face in faces:
-            self.tool.Add(shell, face)
-        shell.Closed(True)
-        self.tool.MakeSolid(solid)
-        self.tool.Add(solid, shell)
-        return solid

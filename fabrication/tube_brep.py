@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from fabrication.brep_geometry import TOLERANCE, knots, ruled_surface, side_surface
+from fabrication.brep_geometry import knots, ruled_surface, side_surface
+from fabrication.brep_pieces import BrepPieces, Used, poles
 from fabrication.cut import Drill
 from fabrication.errors import KernelError
 from fabrication.strip_loops import DEGREE, Piece, Run, arc_images
@@ -22,27 +23,11 @@ from fabrication.tube_sides import Box
 from gridshell.arrays import Floats
 
 try:
-    from OCP.BRep import BRep_Builder
-    from OCP.Geom import Geom_BSplineCurve, Geom_Line, Geom_Plane
-    from OCP.Geom2d import Geom2d_Circle, Geom2d_Line
-    from OCP.gp import gp_Ax22d, gp_Circ2d, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
-    from OCP.TColgp import TColgp_Array1OfPnt
-    from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
-    from OCP.TopLoc import TopLoc_Location
-    from OCP.TopoDS import (
-        TopoDS,
-        TopoDS_Edge,
-        TopoDS_Face,
-        TopoDS_Shell,
-        TopoDS_Solid,
-        TopoDS_Vertex,
-        TopoDS_Wire,
-    )
+    from OCP.Geom import Geom_BSplineCurve, Geom_Plane
+    from OCP.gp import gp_Dir, gp_Pnt
+    from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Solid, TopoDS_Vertex
 except ImportError as error:  # pragma: no cover - depends on the machine
     raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
-
-Used = tuple[TopoDS_Edge, bool]
-"""An edge and whether a wire runs along it."""
 
 _FACES = ("near", "far", "top", "bottom")
 _OUTWARD = {"near": False, "far": True, "top": False, "bottom": True}
@@ -77,17 +62,16 @@ class _Circle:
         return [(edge, False) for edge in reversed(self.edges)]
 
 
-class _Builder:
+class _Builder(BrepPieces):
     """Makes the shared vertices, edges and faces of one tube."""
 
     def __init__(self, boxes: tuple[Box, Box], length: float, drills: Sequence[Drill]) -> None:
-        self.boxes, self.length, self.drills = boxes, length, drills
-        self.tool = BRep_Builder()
+        super().__init__()
+        self.length, self.drills = length, drills
         self.sides = [{name: getattr(box, name) for name in _FACES} for box in boxes]
         self.surfaces = [
             {name: side_surface(side) for name, side in sides.items()} for sides in self.sides
         ]
-        self.tolerance = TOLERANCE
 
     def solid(self) -> TopoDS_Solid:
         """Outer faces, inner faces, ends, walls of the holes."""
@@ -96,14 +80,14 @@ class _Builder:
         faces = []
         for k, ring in enumerate(rings):
             for name in _FACES:
-                wires = [self._wire(ring[name])]
-                wires += [self._wire(hole[k].clockwise()) for hole in holes.get(name, [])]
+                wires = [self.wire(ring[name])]
+                wires += [self.wire(hole[k].clockwise()) for hole in holes.get(name, [])]
                 forward = _OUTWARD[name] if k == 0 else not _OUTWARD[name]
-                faces.append(self._face(self.surfaces[k][name], wires, forward=forward))
+                faces.append(self.face(self.surfaces[k][name], wires, forward=forward))
         faces += [self._end(rings, at_end=at_end) for at_end in (False, True)]
         for name, found in holes.items():
             faces += [wall for hole in found for wall in self._walls(name, hole)]
-        return self._close(faces)
+        return self.close(faces)
 
     # ---- the four faces of a box ---------------------------------------------------------------
 
@@ -121,7 +105,7 @@ class _Builder:
             "far low": far.points(ends, np.zeros(2)),
             "far up": far.points(ends, np.full(2, far.width)),
         }
-        vertex = {key: [self._vertex(p) for p in points] for key, points in place.items()}
+        vertex = {key: [self.vertex(p) for p in points] for key, points in place.items()}
         along = {}
         for key, (side, v) in {
             "near low": ("near", 0.0),
@@ -131,10 +115,10 @@ class _Builder:
         }.items():
             curve = self.surfaces[k][side].VIso(v)
             first, last = vertex[key]
-            along[key] = self._edge(curve, first, last, 0.0, self.length)
+            along[key] = self.edge(curve, first, last, 0.0, self.length)
         across = [
             {
-                name: self._straight(place[a][e], place[b][e], vertex[a][e], vertex[b][e])
+                name: self.straight(place[a][e], place[b][e], vertex[a][e], vertex[b][e])
                 for name, (a, b) in _BETWEEN.items()
             }
             for e in (0, 1)
@@ -142,10 +126,10 @@ class _Builder:
         ring: dict[str, list[Used]] = {}
         for name, (low, high) in _BETWEEN.items():
             surface, width = self.surfaces[k][name], sides[name].width
-            self._trace(along[low], surface, (0.0, 0.0), (1.0, 0.0))
-            self._trace(along[high], surface, (0.0, width), (1.0, 0.0))
+            self.trace(along[low], surface, (0.0, 0.0), (1.0, 0.0))
+            self.trace(along[high], surface, (0.0, width), (1.0, 0.0))
             for e in (0, 1):
-                self._trace(across[e][name], surface, (float(ends[e]), 0.0), (0.0, 1.0))
+                self.trace(across[e][name], surface, (float(ends[e]), 0.0), (0.0, 1.0))
             ring[name] = [
                 (along[low], True),
                 (across[1][name], True),
@@ -173,8 +157,8 @@ class _Builder:
             left = (k == 0) == at_end  # counter-clockwise about the direction of the tube
             order = ("near", "top", "far", "bottom") if left else ("near", "bottom", "far", "top")
             up = {"near": left, "top": left, "far": not left, "bottom": not left}
-            wires.append(self._wire([(edges[name], up[name]) for name in order]))
-        return self._face(plane, wires, forward=True)
+            wires.append(self.wire([(edges[name], up[name]) for name in order]))
+        return self.face(plane, wires, forward=True)
 
     # ---- holes ---------------------------------------------------------------------------------
 
@@ -191,42 +175,40 @@ class _Builder:
         images = arc_images([side], arcs)
         self.tolerance = max(self.tolerance, 2.0 * images.off)
         shares, counts = np.unique(images.knots, return_counts=True)
-        found = []
+        circles = []
         for i in range(0, len(arcs), 2):
             points = [images.poles[i, 0, end] for end in (0, -1)]
-            vertices = [self._vertex(point) for point in points]
+            vertices = [self.vertex(point) for point in points]
             curves, edges = [], []
             for j in (0, 1):
-                arc, poles = arcs[i + j], images.poles[i + j, 0]
+                arc, found = arcs[i + j], images.poles[i + j, 0]
                 low, high = arc.low[0], arc.high[0]
                 values = (low + (high - low) * shares).tolist()
-                curve = Geom_BSplineCurve(_poles(poles), *knots(values, counts.tolist()), DEGREE)
-                edge = self._edge(curve, vertices[j], vertices[1 - j], low, high)
-                axes = gp_Ax22d(gp_Pnt2d(*arc.centre), gp_Dir2d(1.0, 0.0), gp_Dir2d(0.0, 1.0))
-                circle = Geom2d_Circle(gp_Circ2d(axes, arc.at[0]))
-                self.tool.UpdateEdge(edge, circle, surface, TopLoc_Location(), self.tolerance)
+                curve = Geom_BSplineCurve(poles(found), *knots(values, counts.tolist()), DEGREE)
+                edge = self.edge(curve, vertices[j], vertices[1 - j], low, high)
+                self.ring(edge, surface, arc.centre, arc.at[0])
                 curves.append(curve)
                 edges.append(edge)
-            found.append(_Circle(curves, edges, points, vertices))
-        return found
+            circles.append(_Circle(curves, edges, points, vertices))
+        return circles
 
     def _walls(self, name: str, hole: tuple[_Circle, _Circle]) -> list[TopoDS_Face]:
         """The two halves of a hole's wall, from the outer to the inner face."""
         outer, inner = hole
         depth = float(np.linalg.norm(outer.points[0] - inner.points[0]))
         links = [
-            self._straight(outer.points[j], inner.points[j], outer.vertices[j], inner.vertices[j])
+            self.straight(outer.points[j], inner.points[j], outer.vertices[j], inner.vertices[j])
             for j in (0, 1)
         ]
         faces = []
         for j in (0, 1):
             surface = ruled_surface(outer.curves[j], inner.curves[j], depth)
             low, high = j * np.pi, (j + 1) * np.pi
-            self._trace(outer.edges[j], surface, (0.0, 0.0), (1.0, 0.0))
-            self._trace(inner.edges[j], surface, (0.0, depth), (1.0, 0.0))
-            self._trace(links[j], surface, (low, 0.0), (0.0, 1.0))
-            self._trace(links[1 - j], surface, (high, 0.0), (0.0, 1.0))
-            wire = self._wire(
+            self.trace(outer.edges[j], surface, (0.0, 0.0), (1.0, 0.0))
+            self.trace(inner.edges[j], surface, (0.0, depth), (1.0, 0.0))
+            self.trace(links[j], surface, (low, 0.0), (0.0, 1.0))
+            self.trace(links[1 - j], surface, (high, 0.0), (0.0, 1.0))
+            wire = self.wire(
                 [
                     (outer.edges[j], True),
                     (links[1 - j], True),
@@ -234,67 +216,8 @@ class _Builder:
                     (links[j], False),
                 ]
             )
-            faces.append(self._face(surface, [wire], forward=name == "bottom"))
+            faces.append(self.face(surface, [wire], forward=name == "bottom"))
         return faces
-
-    # ---- the kernel's pieces -------------------------------------------------------------------
-
-    def _vertex(self, point: Floats) -> TopoDS_Vertex:
-        vertex = TopoDS_Vertex()
-        self.tool.MakeVertex(vertex, gp_Pnt(*point.tolist()), self.tolerance)
-        return vertex
-
-    def _edge(
-        self, curve: Any, first: TopoDS_Vertex, last: TopoDS_Vertex, low: float, high: float
-    ) -> TopoDS_Edge:
-        edge = TopoDS_Edge()
-        self.tool.MakeEdge(edge, curve, self.tolerance)
-        self.tool.Add(edge, first.Oriented(TopAbs_FORWARD))
-        self.tool.Add(edge, last.Oriented(TopAbs_REVERSED))
-        self.tool.Range(edge, low, high)
-        return edge
-
-    def _straight(
-        self, a: Floats, b: Floats, first: TopoDS_Vertex, last: TopoDS_Vertex
-    ) -> TopoDS_Edge:
-        start, end = gp_Pnt(*a.tolist()), gp_Pnt(*b.tolist())
-        line = Geom_Line(start, gp_Dir(gp_Vec(start, end)))
-        return self._edge(line, first, last, 0.0, start.Distance(end))
-
-    def _trace(
-        self,
-        edge: TopoDS_Edge,
-        surface: Any,
-        origin: tuple[float, float],
-        direction: tuple[float, float],
-    ) -> None:
-        line = Geom2d_Line(gp_Pnt2d(*origin), gp_Dir2d(*direction))
-        self.tool.UpdateEdge(edge, line, surface, TopLoc_Location(), self.tolerance)
-
-    def _wire(self, edges: Sequence[Used]) -> TopoDS_Wire:
-        wire = TopoDS_Wire()
-        self.tool.MakeWire(wire)
-        for edge, forward in edges:
-            self.tool.Add(wire, edge.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
-        wire.Closed(True)
-        return wire
-
-    def _face(self, surface: Any, wires: Sequence[TopoDS_Wire], *, forward: bool) -> TopoDS_Face:
-        face = TopoDS_Face()
-        self.tool.MakeFace(face, surface, TOLERANCE)
-        for wire in wires:
-            self.tool.Add(face, wire)
-        return face if forward else TopoDS.Face_s(face.Reversed())
-
-    def _close(self, faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:
-        shell, solid = TopoDS_Shell(), TopoDS_Solid()
-        self.tool.MakeShell(shell)
-        for face in faces:
-            self.tool.Add(shell, face)
-        shell.Closed(True)
-        self.tool.MakeSolid(solid)
-        self.tool.Add(solid, shell)
-        return solid
 
 
 def _halves(drill: Drill, middle: float) -> list[Piece]:
@@ -314,10 +237,3 @@ def _halves(drill: Drill, middle: float) -> list[Piece]:
         )
         for low, high in turns
     ]
-
-
-def _poles(points: Floats) -> TColgp_Array1OfPnt:
-    array = TColgp_Array1OfPnt(1, len(points))
-    for i, (x, y, z) in enumerate(points.tolist(), start=1):
-        array.SetValue(i, gp_Pnt(x, y, z))
-    return array

@@ -256,7 +256,10 @@ def test_double_lamellas_are_two_different_strips(packages):
 def test_the_canopy_s_slots_vary_with_the_node_angle(packages):
     report, out = packages("15_stainless_canopy")
     angle = report["net"]["node_angle_deg"]
-    assert (angle["min"], angle["max"]) == (pytest.approx(60.0, abs=1.0), pytest.approx(90.0))
+    assert (angle["min"], angle["max"]) == (
+        pytest.approx(60.0, abs=1.0),
+        pytest.approx(90.0, abs=0.2),  # a seam's width off the axes
+    )
     with (out / "parts.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert min(float(row["slot_width_min_mm"]) for row in rows) < 2.75

@@ -19,7 +19,9 @@ REST = {
 
 
 def made(**joint):
-    project = Project.model_validate({**REST, "joint": joint})
+    wall = {"width": 40.0, "thickness": 14.0, "wall": 2.0, "material": "GRP"}
+    more = {"profile": wall} if joint["kind"] == "hinged" else {}
+    project = Project.model_validate({**REST, **more, "joint": joint})
     return joint_of(project.joint, PROFILE)
 
 
@@ -68,6 +70,7 @@ def made(**joint):
             },
             fab.DoubleSlotJoint(30.0, 8.0, fab.StarWasher(4.0, 18.0, 8.0, fab.S235)),
         ),
+        ({"kind": "hinged", "pin": 6.0, "gap": 5.0}, fab.HingedJoint(6.0, gap=5.0)),
     ],
     ids=lambda value: value["kind"] if isinstance(value, dict) else "",
 )
@@ -79,6 +82,7 @@ def test_every_joint_of_the_registry_has_a_section():
     for kind in fab.JOINTS:
         more = {
             "two-level": {"spacing": 30.0},
+            "hinged": {"pin": 6.0},
             "double-slot": {
                 "spacing": 30.0,
                 "bolt": 8.0,
@@ -92,3 +96,27 @@ def test_sizes_that_cannot_be_are_refused_by_their_key():
     with pytest.raises(gs.SettingError) as info:
         made(kind="reciprocal", sharpest=90.0)
     assert info.value.where == "sharpest"
+
+
+@pytest.mark.parametrize(
+    ("joint", "profile", "where"),
+    [
+        ({"kind": "hinged", "pin": 6.0}, {}, "profile.wall"),
+        ({"kind": "slot"}, {"wall": 0.5}, "profile.wall"),
+    ],
+)
+def test_walls_and_hinges_go_together(tmp_path, joint, profile, where):
+    import json
+
+    from fabrication.errors import ProjectError
+    from fabrication.project import read_project
+
+    text = json.dumps({**REST["profile"], **profile}).replace(":", " =")
+    lines = ['name = "x"', f"profile = {text}", "joint = " + json.dumps(joint).replace(":", " =")]
+    lines += ['surface = { kind = "hypar", scale = 6000.0 }', 'net = { anchor = "free" }']
+    patch = 'layout = "asymptotic", p = [-0.2, 0.2], q = [-0.2, 0.2], lamellas = [3, 3]'
+    lines += [f"patch = {{ {patch} }}", "sheet = { length = 4000.0, width = 1000.0 }"]
+    (tmp_path / "p.toml").write_text("\n".join(lines))
+    with pytest.raises(ProjectError) as info:
+        read_project(tmp_path / "p.toml")
+    assert f", {where}" in str(info.value)
