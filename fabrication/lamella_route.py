@@ -32,7 +32,8 @@ from fabrication.lamella_stock import (
     strip_sheets,
 )
 from fabrication.lamella_system import LamellaSystem, Plans
-from fabrication.motion import motion, motion_findings
+from fabrication.motion import motion
+from fabrication.motion_checks import motion_findings
 from fabrication.moving import Moving
 from fabrication.parts import FlatPart, parts_of
 from fabrication.placing import keyed

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from fabrication.motion import Motion, motion_section
+from fabrication.motion import Motion
+from fabrication.motion_checks import motion_section
 
 
 @dataclass(frozen=True, eq=False)

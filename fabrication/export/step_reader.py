@@ -17,11 +17,10 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import BSpline, CubicHermiteSpline
 
+from fabrication.export.step_faces import RuledSide, extent, ruled
 from fabrication.export.step_loops import quadrature, read_loops, segments
 from gridshell import FileError
 from gridshell.arrays import Floats
-
-_NEWTON_STEPS = 8
 
 _TUBE_FACES = 8
 _PARALLEL = 0.9
@@ -32,46 +31,6 @@ _SAME_DRILL = 1e-3
 
 _Candidate = tuple[float, Any, Any]
 """Area of the parameters, surface, face."""
-
-
-@dataclass(frozen=True, eq=False)
-class RuledSide:
-    """A large face: straight rulings between two splines of one parameter u.
-
-    Parameters
-    ----------
-    lower, upper : the edges of the untrimmed face, mm.
-    width : of the second parameter v, which runs from lower to upper, mm.
-    """
-
-    lower: BSpline
-    upper: BSpline
-    width: float
-
-    def points(self, u: Floats, v: Floats) -> Floats:
-        """Positions (n, 3)."""
-        share = (np.asarray(v) / self.width)[..., None]
-        return np.asarray((1.0 - share) * self.lower(u) + share * self.upper(u))
-
-    def slopes(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Derivatives by u and by v, each (n, 3)."""
-        share = (np.asarray(v) / self.width)[..., None]
-        by_u = (1.0 - share) * self.lower(u, 1) + share * self.upper(u, 1)
-        return by_u, (self.upper(u) - self.lower(u)) / self.width
-
-    def parameters(self, points: Floats) -> Floats:
-        """(n, 2) parameters of *points* on the face: nearest sample, then Newton."""
-        samples = np.linspace(self.lower.t[0], self.lower.t[-1], 4 * len(self.lower.c))
-        middle = self.points(samples, np.full_like(samples, self.width / 2.0))
-        nearest = np.argmin(np.linalg.norm(points[:, None] - middle, axis=2), axis=1)
-        uv = np.stack([samples[nearest], np.full(len(points), self.width / 2.0)], axis=1)
-        for _ in range(_NEWTON_STEPS):
-            offset = points - self.points(uv[:, 0], uv[:, 1])
-            slopes = np.stack(self.slopes(uv[:, 0], uv[:, 1]), axis=2)
-            gram = np.einsum("nci,ncj->nij", slopes, slopes)
-            right = np.einsum("nci,nc->ni", slopes, offset)
-            uv = uv + np.linalg.solve(gram, right[..., None])[..., 0]
-        return uv
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,7 +231,7 @@ def _part(path: Path | str, name: str, brep: Any) -> StepPart | None:
     for face in (shell.CfsFacesValue(i) for i in range(1, shell.NbCfsFaces() + 1)):
         surface = face.FaceGeometry()
         if isinstance(surface, StepGeom_BSplineSurfaceWithKnots) and surface.VDegree() == 1:
-            candidates.append((_extent(surface), surface, face))
+            candidates.append((extent(surface), surface, face))
     candidates.sort(key=lambda candidate: candidate[0], reverse=True)
     if not candidates:
         return None
@@ -284,7 +243,7 @@ def _part(path: Path | str, name: str, brep: Any) -> StepPart | None:
 
 
 def _between(where: str, name: str, pair: Sequence[_Candidate]) -> StepPart:
-    near, far = (_ruled(surface) for _, surface, _ in pair)
+    near, far = (ruled(surface) for _, surface, _ in pair)
     if not np.array_equal(near.lower.t, far.lower.t):
         raise FileError("The two large faces of a solid differ", where=where)
     loops = [
@@ -311,7 +270,7 @@ def _cavity(where: str, whole: StepPart, candidates: Sequence[_Candidate]) -> Ca
     wide: list[tuple[float, bool, _Candidate]] = []
     narrow: list[tuple[float, bool, _Candidate]] = []
     for candidate in long[2:]:
-        side = _ruled(candidate[1])
+        side = ruled(candidate[1])
         here = np.array([side.width / 2.0])
         along = abs(float(side.slopes(u, here)[1][0] @ up))
         height = float((side.points(u, here)[0] - middle) @ up)
@@ -320,38 +279,9 @@ def _cavity(where: str, whole: StepPart, candidates: Sequence[_Candidate]) -> Ca
         return None
     narrow.sort(key=lambda found: found[0], reverse=True)  # both outer ones first
     outer = sorted(narrow[:2], key=lambda found: found[1], reverse=True)
-    loops = [read_loops(c[2], _ruled(c[1]).parameters) for _, _, c in outer]
+    loops = [read_loops(c[2], ruled(c[1]).parameters) for _, _, c in outer]
     return Cavity(
         inside=_between(where, whole.mark, [c for _, _, c in wide]),
         flanges=(loops[0], loops[1]),
         wall=narrow[0][0] - narrow[2][0],
     )
-
-
-def _extent(surface: Any) -> float:
-    """Area of the parameters of a spline surface."""
-    last_u, last_v = surface.NbUKnots(), surface.NbVKnots()
-    u = surface.UKnotsValue(last_u) - surface.UKnotsValue(1)
-    return float(u * (surface.VKnotsValue(last_v) - surface.VKnotsValue(1)))
-
-
-def _ruled(surface: Any) -> RuledSide:
-    u = np.repeat(
-        [surface.UKnotsValue(i) for i in range(1, surface.NbUKnots() + 1)],
-        [surface.UMultiplicitiesValue(i) for i in range(1, surface.NbUKnots() + 1)],
-    )
-    v = [surface.VKnotsValue(i) for i in range(1, surface.NbVKnots() + 1)]
-    rows = range(1, surface.NbControlPointsListI() + 1)
-    edges = [
-        BSpline(
-            u,
-            np.array([_xyz(surface.ControlPointsListValue(i, j)) for i in rows]),
-            surface.UDegree(),
-        )
-        for j in (1, surface.NbControlPointsListJ())
-    ]
-    return RuledSide(edges[0], edges[1], v[-1] - v[0])
-
-
-def _xyz(point: Any) -> list[float]:
-    return [point.CoordinatesValue(i) for i in (1, 2, 3)]

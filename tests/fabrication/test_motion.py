@@ -6,7 +6,8 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.motion import motion, motion_findings, motion_section
+from fabrication.motion import motion
+from fabrication.motion_checks import motion_findings, motion_section
 
 UMBRELLA = gs.Umbrella(16, 1200.0, (480.0,) * 8)
 PROFILE = fab.Profile(50.0, 4.0, fab.GRP)
