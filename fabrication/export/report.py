@@ -88,6 +88,7 @@ def write_report(
         connectors=[prisms for prisms in jointed.connectors if prisms.bodies],
         masses=[mass(part, strips.profile.material) for part in parts],
         sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
+        sheet_count=len(sheets),
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
         clearance=clearance,
         design=design,
