@@ -133,13 +133,43 @@ def run(
 
 
 @app.command()
-def check(project: ProjectFile, quiet: Quiet = False, debug: Debug = False) -> None:
-    """Read a project file, name what is wrong with it, and print it with every setting."""
+def check(
+    project: ProjectFile,
+    findings: Annotated[
+        bool,
+        typer.Option("--findings", help="Design it, too, and list every finding; writes nothing."),
+    ] = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Read a project file, name what is wrong, and print every setting with what it means.
+
+    With --findings the net and its parts are made, but no file: ends with 1 where a finding is an
+    error.
+    """
     from fabrication.project import project_text, read_project
 
     content = read_project(project)
     if not quiet:
-        typer.echo(project_text(content), nl=False)
+        typer.echo(project_text(content, explained=True), nl=False)
+    if not findings:
+        return
+    from fabrication.package import found_by
+
+    found = found_by(content, folder=project.parent)
+    if not quiet:
+        _print_all(found)
+    if any(finding["severity"] == "error" for finding in found):
+        raise typer.Exit(1)
+
+
+def _print_all(found: list[dict[str, Any]]) -> None:
+    """Every finding, a line each."""
+    typer.echo(f"\n# {len(found)} findings" if found else "\n# no findings")
+    for finding in found:
+        typer.echo(
+            f"# {finding['severity']} {finding['code']} [{finding['where']}] {finding['message']}"
+        )
 
 
 @contextmanager

@@ -103,6 +103,19 @@ def run(
     return report
 
 
+def found_by(project: Project, *, folder: Path | str = ".") -> list[Report]:
+    """Every finding of the design of *project*, as in ``report.json``; no file is written.
+
+    What only written files can show (closure, clashes, faults of sheets) is not among them.
+
+    Raises
+    ------
+    As :func:`run`.
+    """
+    design = _design(project, route_of(project), Path(folder), Clock(lambda stage: None))
+    return [{**asdict(f), "severity": f.severity.value} for f in design.findings]
+
+
 def _sheets_before(out: Path) -> list[str]:
     """Sheets that the report of an earlier run names, whatever the shop called them."""
     try:

@@ -27,6 +27,7 @@ from fabrication.joint_sections import (
     StudSection,
     WasherSection,
 )
+from fabrication.key_help import key_help
 from fabrication.lamella_sections import (
     BarsSection,
     FlatSection,
@@ -36,8 +37,10 @@ from fabrication.lamella_sections import (
 )
 from fabrication.motion_sections import MotionSection, UmbrellaSection
 from fabrication.panel_sections import (
+    BeamsSection,
     ConnectorSection,
     FacadeSection,
+    MouldsSection,
     PanelsSection,
     SupportsSection,
 )
@@ -89,26 +92,33 @@ def read_project(path: Path | str) -> Project:
 # ---- writing -----------------------------------------------------------------------------------
 
 
-def project_text(project: Project) -> str:
+def project_text(project: Project, *, explained: bool = False) -> str:
     """*project* as TOML with every setting; what is unset stands in a comment.
 
     ``read_project`` makes the same project of it.
+
+    Parameters
+    ----------
+    explained : with what every key means behind it.
     """
     lines = [f"name = {_toml(project.name)}"]
     for name in type(project).model_fields:
         section = getattr(project, name)
         if isinstance(section, Section):
-            lines += ["", f"[{name}]", *_settings(section)]
+            about = f"  # {key_help('Project', name)}" if explained else ""
+            lines += ["", f"[{name}]{about}", *_settings(section, explained)]
     return "\n".join(lines) + "\n"
 
 
-def _settings(section: Section) -> Iterator[str]:
+def _settings(section: Section, explained: bool) -> Iterator[str]:
+    names = {kind: name for name, kind in reversed(_sections().items())}
     for name, field in type(section).model_fields.items():
         value = getattr(section, name)
+        about = key_help(names[type(section)], name) if explained else ""
         if value is None:
-            yield f"# {name} = ...  # unset: {field.description}"
+            yield f"# {name} = ...  # unset: {field.description}" + (f"; {about}" if about else "")
         else:
-            yield f"{name} = {_toml(value)}"
+            yield f"{name} = {_toml(value)}" + (f"  # {about}" if about else "")
 
 
 def _toml(value: Any) -> str:
@@ -229,6 +239,8 @@ def _sections() -> dict[str, type[Section]]:
         "panels": PanelsSection,
         "supports": SupportsSection,
         "facade": FacadeSection,
+        "beams": BeamsSection,
+        "moulds": MouldsSection,
         "panel_sheet": SheetSection,
     }
     section: type[Section]

@@ -111,7 +111,9 @@ def test_check_lists_every_setting_with_its_value(command, write):
     assert (code, err) == (0, "")
     assert tomllib.loads(out)["net"]["steps"] == 30
     lines = set(out.splitlines())
-    assert {'name = "small"', "[net]", "[joint]", "clearance = 0.3", "p = [-0.2, 0.2]"} <= lines
+    bare = {line.split("  # ")[0] for line in lines}
+    assert {'name = "small"', "[net]", "[joint]", "clearance = 0.3", "p = [-0.2, 0.2]"} <= bare
+    assert all("  # " in line for line in lines if " = " in line and not line.startswith("name"))
     unset = {line.split()[1] for line in lines if line.startswith("#")}
     assert unset == {"angle", "angle_between", "mirror", "overhang", "supports", "wall"}
 
@@ -120,6 +122,20 @@ def test_what_check_says_is_a_project_that_says_the_same(command, write, tmp_pat
     _, out, _ = command("check", write('"stainless"', WEAK))
     (tmp_path / "again.toml").write_text(out, encoding="utf-8")
     assert command("check", tmp_path / "again.toml") == (0, out, "")
+
+
+def test_check_lists_findings_without_writing(command, write, tmp_path):
+    path = write('"stainless"', WEAK)
+    code, out, _ = command("check", path, "--findings")
+    assert code == 1
+    assert "# error " in out
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_check_says_when_there_are_no_findings(command, write):
+    code, out, _ = command("check", write(), "--findings")
+    assert code == 0
+    assert out.rstrip().endswith("# no findings")
 
 
 def test_a_quiet_check_says_nothing(command, write):
