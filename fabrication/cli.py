@@ -20,6 +20,7 @@ import typer
 
 from fabrication.gallery_cli import gallery
 from fabrication.lint_cli import lint
+from fabrication.new_cli import new
 from fabrication.optimize_cli import optimize
 from fabrication.remesh_cli import remesh
 
@@ -38,6 +39,7 @@ app.command()(remesh)
 app.command()(optimize)
 app.command()(lint)
 app.command()(gallery)
+app.command()(new)
 
 _STAGES = 11
 
