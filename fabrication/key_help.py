@@ -39,6 +39,7 @@ KEYS: dict[str, dict[str, str]] = {
         "papers": "drawings, labels, templates, coupons",
         "motion": "the way of a net that opens",
         "segments": "copies of the net around an axis",
+        "export": "files for other programs, in export/",
         "facade": "flat triangles of glass on strips",
         "panels": "flat panels, in place of strips",
         "supports": "plates between the node axes of panels",
@@ -87,6 +88,7 @@ KEYS: dict[str, dict[str, str]] = {
         "seam": "mm that strips of neighbours keep",
         "hang": "list the nodes upside down, as a segment is put together",
     },
+    "export": {"formats": "of glb, ply, obj (meshes), 3dm (Rhino), ifc (IFC4)"},
     "remesh": {
         "directions": "asymptotic for strips; principal or conjugate for panels",
         "angle": "degrees between conjugate directions",

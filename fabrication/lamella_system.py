@@ -124,6 +124,12 @@ class LamellaSystem:
             self._write_lists(draft)
         with clock.stage("papers"):
             self._write_papers(draft)
+            if self.project.export is not None:
+                from fabrication.export.interchange.model import lamella_model
+                from fabrication.exporting import write_exports
+
+                model = lamella_model(self.project.name, jointed, self.parts)
+                write_exports(draft / "export", self.project.export.formats, model)
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):

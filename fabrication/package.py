@@ -17,6 +17,7 @@ import numpy as np
 
 import gridshell as gs
 from fabrication.delivery import draft_folder, move_in
+from fabrication.exporting import require_formats
 from fabrication.finding import Finding
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.lamella_route import LamellaRoute
@@ -43,6 +44,7 @@ _STALE = (
     *(f"{name}.csv" for name in ("assembly", "bars", "bays", "beams", "bill", "flat")),
     *(f"{name}.csv" for name in ("drillings", "hanging", "motion")),
     *("motion.glb", "motion.html"),
+    *(f"export/structure.{form}" for form in ("glb", "ply", "obj", "3dm", "ifc")),
     *(f"{name}.pdf" for name in ("drawings", "labels", "templates")),
 )
 
@@ -95,6 +97,8 @@ def run(
     """
     out = Path(out)
     clock = Clock(announce)
+    if project.export is not None:
+        require_formats(project.export.formats)
     route = route_of(project)
     with draft_folder(out, names=(*FILES, *route.files)) as draft, kernel() as cad:
         design = _design(project, route, Path(folder), clock)

@@ -132,6 +132,12 @@ class PanelNetSystem:
             if self.beams:
                 write_beam_schedule(draft / "beams.csv", self.beams)
             drawn = [part for path in files for part in read_dxf(path)]
+        if self.project.export is not None:
+            from fabrication.export.interchange.model import bodies_model
+            from fabrication.exporting import write_exports
+
+            model = bodies_model(self.project.name, self.bodies)
+            write_exports(draft / "export", self.project.export.formats, model)
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):

@@ -20,6 +20,7 @@ from pydantic import ValidationError
 from fabrication.angle_sections import ANGLE_CHOICES, FieldSection, MirrorSection
 from fabrication.angle_settings import require_angle
 from fabrication.errors import ProjectError
+from fabrication.export_sections import ExportSection
 from fabrication.joint_sections import (
     BlocksSection,
     CleatSection,
@@ -233,6 +234,7 @@ def _sections() -> dict[str, type[Section]]:
         "mirror": MirrorSection,
         "motion": MotionSection,
         "segments": SegmentsSection,
+        "export": ExportSection,
         "papers": PapersSection,
         "sheet": SheetSection,
         "own material": MaterialSection,

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from fabrication.angle_sections import AngleChoice, MirrorSection, NodeAngle, Point
+from fabrication.export_sections import ExportSection
 from fabrication.joint_sections import JointSection
 from fabrication.lamella_sections import (
     BarsSection,
@@ -111,6 +112,7 @@ class Project(Section):
     papers: PapersSection | None = None
     motion: MotionSection | None = None
     segments: SegmentsSection | None = None
+    export: ExportSection | None = None
     facade: FacadeSection | None = None
     panels: PanelsSection | None = None
     supports: SupportsSection | None = None

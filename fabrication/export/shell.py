@@ -61,7 +61,7 @@ class _StripMesh:
 def _strip_mesh(lamella: Lamella, part: FlatPart, stress: BayStress, index: int) -> _StripMesh:
     """Columns between all slot walls and a few samples per bay, laid into place at once."""
     per_bay = int(np.clip(_COLUMNS // len(stress), _SAMPLES_PER_BAY[0], _SAMPLES_PER_BAY[-1]))
-    x, lower, upper = _columns(part, per_bay)
+    x, lower, upper = columns(part, per_bay)
     corner_x = np.stack([x[:-1], x[1:], x[1:], x[:-1]], axis=1)
     corner_y = np.stack([lower, lower, upper, upper], axis=1)
     corners = np.stack([corner_x.ravel(), corner_y.ravel()], axis=1)
@@ -93,7 +93,7 @@ def _hover(lamella: Lamella, part: FlatPart, stress: BayStress, bays: Indices) -
     )
 
 
-def _columns(part: FlatPart, per_bay: int) -> tuple[Floats, Floats, Floats]:
+def columns(part: FlatPart, per_bay: int) -> tuple[Floats, Floats, Floats]:
     """(c + 1,) ends of the columns along the strip, (c,) lower and (c,) upper bounds, mm."""
     first, last = abs(part.bevels[0]) / 2.0, part.length - abs(part.bevels[1]) / 2.0
     bays = np.unique(np.clip(np.r_[first, part.development.node_x, last], first, last))
