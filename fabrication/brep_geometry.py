@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fabrication.errors import KernelError
+from fabrication.errors import no_kernel
 from fabrication.sides import Side
 from fabrication.strip_loops import Loop, Run
 from gridshell.arrays import Floats, unit
@@ -17,7 +17,7 @@ try:
     from OCP.TColgp import TColgp_Array2OfPnt
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
+    raise no_kernel(error) from error
 
 TOLERANCE = 1e-6
 """Of the kernel's vertices and edges at least, mm."""

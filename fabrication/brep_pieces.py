@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fabrication.brep_geometry import TOLERANCE
-from fabrication.errors import KernelError
+from fabrication.errors import no_kernel
 from gridshell.arrays import Floats
 
 try:
@@ -31,11 +31,7 @@ try:
         TopoDS_Wire,
     )
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError(
-        "The CAD kernel cannot be loaded",
-        value=str(error),
-        advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
-    ) from error
+    raise no_kernel(error) from error
 
 Used = tuple[TopoDS_Edge, bool]
 """An edge and whether a wire runs along it."""

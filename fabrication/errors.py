@@ -29,3 +29,12 @@ class OutputError(InputError, OSError):
 
 class KernelError(GridshellError):
     """The CAD kernel is missing, or a solid is not valid."""
+
+
+def no_kernel(error: ImportError) -> KernelError:
+    """What is told where the CAD kernel cannot be loaded."""
+    return KernelError(
+        "The CAD kernel cannot be loaded",
+        value=str(error),
+        advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
+    )

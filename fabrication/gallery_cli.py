@@ -68,8 +68,7 @@ def _print_table(rows: list[Row], out: Path) -> None:
             else (figure.title, _numbers(figure), _own(figure))
         )
         table.add_row(row.name, *map(escape, told), seconds, verdict)
-    console = Console(highlight=False)
-    console = Console(highlight=False, width=max(console.width, _LEAST_WIDTH))
+    console = Console(highlight=False, width=max(Console().width, _LEAST_WIDTH))
     console.print(table)
     for row in rows:
         for remark in row.figure.remarks if row.figure else ():

@@ -115,7 +115,7 @@ def motion(
     driven = gs.Cable(0, last - last % 2) if cable is None else cable
     low, high = _range(umbrella, limits)
     positions = [umbrella.position(o) for o in np.linspace(low, high, count).tolist()]
-    lengths = np.array([_length(driven, p) for p in positions])
+    lengths = np.array([driven.length(p) for p in positions])
     states = []
     for number, here in enumerate(positions):
         announce(number)
@@ -202,7 +202,7 @@ def _step(position: gs.Position, cable: gs.Cable, state: _State, force: float) -
     angles = position.node_angles
     return MotionStep(
         opening=position.opening,
-        cable=_length(cable, position),
+        cable=cable.length(position),
         lean=float(np.arctan2(away, up)),
         force=force,
         height=position.height,
@@ -215,17 +215,12 @@ def _step(position: gs.Position, cable: gs.Cable, state: _State, force: float) -
     )
 
 
-def _length(cable: gs.Cable, position: gs.Position) -> float:
-    return float(cable.lengths(position.radii[None], position.heights[None])[0])
-
-
 def _range(umbrella: gs.Umbrella, limits: tuple[float, float]) -> tuple[float, float]:
     """Openings between which all node angles are within *limits*."""
     tried = np.linspace(0.0, 1.0, 2001)
     closed, opened = umbrella.locks
     r, _ = umbrella.rings(closed.first + tried * (opened.first - closed.first))
-    half = r[:, 1:] * np.sin(pi / umbrella.ribs) / np.array(umbrella.bays)
-    angles = 2.0 * np.arcsin(np.clip(half, -1.0, 1.0))
+    angles = umbrella.node_angles(r)
     good = (angles.min(axis=1) >= limits[0]) & (angles.max(axis=1) <= limits[1])
     if np.count_nonzero(good) < 2:
         short = np.maximum(limits[0] - angles.min(axis=1), angles.max(axis=1) - limits[1])

@@ -45,8 +45,11 @@ class Frame:
         return np.stack([away @ self.x, away @ self.y], axis=-1)
 
     def place(self, flat: Floats) -> Points:
-        """(k, 3) where flat points (k, 2) lie in space, mm."""
-        return np.asarray(self.origin + flat[..., :1] * self.x + flat[..., 1:2] * self.y)
+        """(k, 3) where flat points (k, 2), or (k, 3) with heights over the plane, lie, mm."""
+        placed = self.origin + flat[..., :1] * self.x + flat[..., 1:2] * self.y
+        if flat.shape[-1] == 3:
+            placed = placed + flat[..., 2:] * self.normal
+        return np.asarray(placed)
 
     def distance(self, points: Points) -> Floats:
         """(k,) signed distance of points (k, 3) from the plane, mm."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fabrication.errors import KernelError
+from fabrication.errors import KernelError, no_kernel
 from fabrication.shapes import Shape
 from fabrication.solid import KERNEL_ERRORS
 from gridshell.arrays import Floats
@@ -24,7 +24,7 @@ try:
     from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
     from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
+    raise no_kernel(error) from error
 
 
 def prism(shape: Shape) -> TopoDS_Shape:

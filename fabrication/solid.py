@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fabrication.colours import FAMILY_COLOURS
-from fabrication.errors import KernelError
+from fabrication.errors import KernelError, no_kernel
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
 from fabrication.sides import strip_sides
@@ -24,11 +24,7 @@ try:
     from OCP.GProp import GProp_GProps
     from OCP.TopoDS import TopoDS_Solid
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError(
-        "The CAD kernel cannot be loaded",
-        value=str(error),
-        advice="install the project again; a bare Linux also needs libgl1 and libxrender1",
-    ) from error
+    raise no_kernel(error) from error
 
 KERNEL_ERRORS = tuple(
     kind

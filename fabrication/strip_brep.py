@@ -27,7 +27,7 @@ from fabrication.brep_geometry import (
     wall_planes,
 )
 from fabrication.brep_pieces import BrepPieces, poles
-from fabrication.errors import KernelError
+from fabrication.errors import no_kernel
 from fabrication.sides import Side
 from fabrication.strip_loops import DEGREE, Loop, Piece, Run, arc_images
 
@@ -35,7 +35,7 @@ try:
     from OCP.Geom import Geom_BSplineCurve
     from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Solid, TopoDS_Vertex, TopoDS_Wire
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
+    raise no_kernel(error) from error
 
 
 def strip_brep(sides: tuple[Side, Side], thickness: float, loops: Sequence[Loop]) -> TopoDS_Solid:

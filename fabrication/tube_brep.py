@@ -17,7 +17,7 @@ import numpy as np
 from fabrication.brep_geometry import knots, ruled_surface, side_surface
 from fabrication.brep_pieces import BrepPieces, Used, poles
 from fabrication.cut import Drill
-from fabrication.errors import KernelError
+from fabrication.errors import no_kernel
 from fabrication.strip_loops import DEGREE, Piece, Run, arc_images
 from fabrication.tube_sides import Box
 from gridshell.arrays import Floats
@@ -27,7 +27,7 @@ try:
     from OCP.gp import gp_Dir, gp_Pnt
     from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Solid, TopoDS_Vertex
 except ImportError as error:  # pragma: no cover - depends on the machine
-    raise KernelError("The CAD kernel cannot be loaded", value=str(error)) from error
+    raise no_kernel(error) from error
 
 _FACES = ("near", "far", "top", "bottom")
 _OUTWARD = {"near": False, "far": True, "top": False, "bottom": True}

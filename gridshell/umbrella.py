@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gridshell.arrays import Floats, Points, frozen
+from gridshell.arrays import Floats, Mask, Points, frozen
 from gridshell.errors import SettingError
 from gridshell.mesh import ControlMesh, QuadMesh, as_control_mesh, grid_quads
 
@@ -132,7 +132,17 @@ class Umbrella:
             ends.append(self._position(float(good)))
         return ends[0], ends[1]
 
-    def _exists(self, first: Floats) -> Floats:
+    def node_angles(self, radii: Floats) -> Floats:
+        """(p, m) angle between the two edges that rise from a node of each ring, radians.
+
+        Parameters
+        ----------
+        radii : (p, m + 1) of all rings, mm, as of :meth:`rings`.
+        """
+        half = radii[..., 1:] * np.sin(np.pi / self.ribs) / np.array(self.bays)
+        return np.asarray(2.0 * np.arcsin(np.clip(half, -1.0, 1.0)))
+
+    def _exists(self, first: Floats) -> Mask:
         return np.asarray(np.isfinite(self.rings(first)[0]).all(axis=1))
 
     def position(self, opening: float) -> Position:
@@ -253,6 +263,16 @@ class Cable:
             np.hypot(radii[:, high] - radii[:, low], heights[:, high] - heights[:, low])
         )
 
+    def length(self, position: Position) -> float:
+        """Its length in one *position*, mm.
+
+        Raises
+        ------
+        SettingError
+            For a ring that the umbrella does not have.
+        """
+        return float(self.lengths(position.radii[None], position.heights[None])[0])
+
 
 @dataclass(frozen=True, eq=False)
 class Position:
@@ -282,8 +302,7 @@ class Position:
     @cached_property
     def node_angles(self) -> Floats:
         """(m,) angle between the two edges that rise from a node of each ring, radians."""
-        half = self.radii[1:] * np.sin(np.pi / self.umbrella.ribs)
-        return np.asarray(2.0 * np.arcsin(np.clip(half / self.umbrella.bays, -1.0, 1.0)))
+        return self.umbrella.node_angles(self.radii)
 
     @property
     def height(self) -> float:
@@ -301,7 +320,7 @@ class Position:
         return as_control_mesh(mesh.moved(_between(mesh, (i + k) % 2 == 1, vertices)))
 
 
-def _between(mesh: QuadMesh, moved: Floats, vertices: Points) -> Points:
+def _between(mesh: QuadMesh, moved: Mask, vertices: Points) -> Points:
     """Every vertex that is *moved* in the middle of its neighbours along the edges."""
     total = np.zeros_like(vertices)
     count = np.zeros(len(vertices))
@@ -311,7 +330,7 @@ def _between(mesh: QuadMesh, moved: Floats, vertices: Points) -> Points:
     return np.where(moved[:, None], total / count[:, None], vertices)
 
 
-def _longest_run(flags: Floats) -> tuple[int, int]:
+def _longest_run(flags: Mask) -> tuple[int, int]:
     """First and last index of the longest run of True."""
     edges = np.flatnonzero(np.diff(np.r_[False, flags, False]))
     starts, stops = edges[::2], edges[1::2] - 1

@@ -11,16 +11,12 @@ from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-from manifold3d import triangulate
 
 from fabrication.colours import css
 from fabrication.export.shell import LIGHT
-from fabrication.flattening import corners
-from fabrication.shapes import Prisms, Shape
+from fabrication.export.view_meshes import shape_mesh
+from fabrication.shapes import Prisms
 from gridshell.arrays import Floats, Indices, Points
-
-_STEP = np.pi / 4.0
-"""Largest turn of an arc between two of its points."""
 
 _FINE = {"facenormalsepsilon": 0.0, "vertexnormalsepsilon": 0.0}
 """Faces of a square millimetre count, too, in a view in metres."""
@@ -71,23 +67,3 @@ def _instances(
         "frames": np.round(frames, 5).ravel().tolist(),
         "marks": [body.mark for body in prisms.bodies],
     }
-
-
-def shape_mesh(shape: Shape) -> tuple[Points, Indices]:
-    """Points (n, 3), mm, and triangles (m, 3), facing outwards, of a shape with its openings."""
-    rings = [corners(shape.outline, _STEP), *(corners(o, _STEP)[::-1] for o in shape.openings)]
-    flat = np.concatenate(rings)
-    caps = np.asarray(triangulate(rings), dtype=np.int64).reshape(-1, 3)
-    count = len(flat)
-    levels = (np.full(count, shape.low), np.full(count, shape.high))
-    points = np.concatenate([np.column_stack([flat, level]) for level in levels])
-    first = np.cumsum([0, *(len(ring) for ring in rings[:-1])])
-    here = np.arange(count)
-    after = np.concatenate(
-        [at + np.roll(np.arange(len(ring)), -1) for at, ring in zip(first, rings, strict=True)]
-    )
-    walls = [
-        np.stack([here, after, after + count], axis=1),
-        np.stack([here, after + count, here + count], axis=1),
-    ]
-    return points, np.concatenate([caps[:, ::-1], caps + count, *walls])

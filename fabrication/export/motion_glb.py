@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from fabrication.colours import FAMILY_COLOURS
+from fabrication.export.gltf_space import linear, upright
 from fabrication.motion import Motion
-from gridshell.arrays import Floats, Indices, Points
+from gridshell.arrays import Floats, Indices
 
 SECONDS = 8.0
 """Of the animation, from closed to opened."""
@@ -37,8 +38,8 @@ def write_motion_glb(path: Path | str, found: Motion) -> None:
     channels: list[Any] = []
     for family, chosen in ((1, slice(None, found.first)), (2, slice(found.first, None))):
         strips = frames[:, chosen]
-        points = _upright(strips.reshape(len(frames), -1, 3)) / 1000.0
-        faces = _faces(strips.shape[1], strips.shape[2])
+        points = upright(strips.reshape(len(frames), -1, 3))
+        faces = strip_triangles(strips.shape[1], strips.shape[2])
         targets = [{"POSITION": file.floats(p - points[0], bounds=True)} for p in points[1:]]
         primitive = gltf.Primitive(
             attributes=gltf.Attributes(POSITION=file.floats(points[0], bounds=True)),
@@ -47,13 +48,14 @@ def write_motion_glb(path: Path | str, found: Motion) -> None:
             targets=targets,
         )
         meshes.append(gltf.Mesh(primitives=[primitive], weights=[0.0] * len(targets)))
-        colour = [c**2.2 for c in FAMILY_COLOURS[family]]  # linear
         materials.append(
             gltf.Material(
                 name=f"family {'AB'[family - 1]}",
                 doubleSided=True,
                 pbrMetallicRoughness=gltf.PbrMetallicRoughness(
-                    baseColorFactor=[*colour, 1.0], metallicFactor=0.0, roughnessFactor=0.8
+                    baseColorFactor=[*linear(FAMILY_COLOURS[family]), 1.0],
+                    metallicFactor=0.0,
+                    roughnessFactor=0.8,
                 ),
             )
         )
@@ -79,12 +81,7 @@ def write_motion_glb(path: Path | str, found: Motion) -> None:
     Path(path).write_bytes(b"".join(made.save_to_bytes()))
 
 
-def _upright(points: Points) -> Points:
-    """Z upwards becomes y upwards."""
-    return np.stack([points[..., 0], points[..., 2], -points[..., 1]], axis=-1)
-
-
-def _faces(strips: int, places: int) -> Indices:
+def strip_triangles(strips: int, places: int) -> Indices:
     """(m, 3) triangles of strips of quads, points counted as strip, place, edge."""
     k, i = (a.ravel() for a in np.meshgrid(np.arange(strips), np.arange(places - 1), indexing="ij"))
     a = (k * places + i) * 2

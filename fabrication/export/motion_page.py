@@ -14,6 +14,7 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from fabrication.colours import FAMILY_COLOURS, css
+from fabrication.export.motion_glb import strip_triangles
 from fabrication.export.words import fixed, plural
 from fabrication.motion import Motion, MotionStep
 
@@ -74,17 +75,16 @@ def _data(found: Motion) -> dict[str, Any]:
     frames = [base64.b64encode(frame.tobytes()).decode() for frame in whole]
     meshes = []
     for family, first, last in ((1, 0, found.first), (2, found.first, count)):
-        k, i = np.meshgrid(np.arange(last - first), np.arange(places - 1), indexing="ij")
-        a = ((k * places + i) * 2).ravel()
+        i, j, k = strip_triangles(last - first, places).T.tolist()
         meshes.append(
             {
                 "name": f"family {'AB'[family - 1]}",
                 "colour": css(FAMILY_COLOURS[family]),
                 "from": first * places * 2,
                 "to": last * places * 2,
-                "i": np.concatenate([a, a]).tolist(),
-                "j": np.concatenate([a + 2, a + 3]).tolist(),
-                "k": np.concatenate([a + 3, a + 1]).tolist(),
+                "i": i,
+                "j": j,
+                "k": k,
             }
         )
     texts = [_texts(step) for step in found.steps]

@@ -16,7 +16,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.cut import Edge, Floor, Slot
+from fabrication.export.view_meshes import columns
 from fabrication.export.words import fixed, plural
 from fabrication.jointed import Jointed
 from fabrication.lamella import Lamella
@@ -84,39 +84,13 @@ def _strip_mesh(lamella: Lamella, part: FlatPart, stress: BayStress, index: int)
 def _hover(lamella: Lamella, part: FlatPart, stress: BayStress, bays: Indices) -> str:
     worst = int(bays[np.argmax(stress.utilisation[bays])])
     cuts = [plural(len(part.slots), "slot")]
-    if part.holes:
-        cuts.append(plural(len(part.holes), "hole"))
+    if part.holes or part.drills:
+        cuts.append(plural(len(part.holes) + len(part.drills), "hole"))
     return (
         f"<b>{lamella.mark}</b>, family {'AB'[lamella.family - 1]}<br>"
         f"length {fixed(part.length, 1)} mm<br>{', '.join(cuts)}<br>"
         f"{fixed(100.0 * stress.utilisation[worst], 0)} % used at {stress.bays[worst]}"
     )
-
-
-def columns(part: FlatPart, per_bay: int) -> tuple[Floats, Floats, Floats]:
-    """(c + 1,) ends of the columns along the strip, (c,) lower and (c,) upper bounds, mm."""
-    first, last = abs(part.bevels[0]) / 2.0, part.length - abs(part.bevels[1]) / 2.0
-    bays = np.unique(np.clip(np.r_[first, part.development.node_x, last], first, last))
-    steps = np.arange(per_bay * (len(bays) - 1) + 1) / per_bay
-    samples = np.interp(steps, np.arange(len(bays)), bays)
-    centres = np.array([slot.x for slot in part.slots])
-    half = np.array([slot.width for slot in part.slots]) / 2.0
-    x = np.unique(np.clip(np.r_[centres - half, centres + half, samples], first, last))
-    x = x[np.r_[True, np.diff(x) > 1e-6]]
-    middle = (x[:-1] + x[1:]) / 2.0
-    notch = []
-    for edge in (Edge.LOWER, Edge.UPPER):
-        slots = [(slot.x, slot.width, _depth(slot)) for slot in part.slots if slot.edge is edge]
-        centre, width, depth = np.array(slots).reshape(-1, 3).T
-        inside = np.abs(middle[:, None] - centre) < width / 2.0
-        notch.append(np.where(inside, depth, 0.0).max(axis=1, initial=0.0))
-    return x, notch[0], np.maximum(notch[0], part.width - notch[1])
-
-
-def _depth(slot: Slot) -> float:
-    """Depth of the rectangle that stands for a slot: a half circle is pi / 4 of its square."""
-    rounded = np.pi / 8.0 * slot.width if slot.floor is Floor.ROUND else 0.0
-    return float(slot.depth + rounded)
 
 
 def shell_figure(
@@ -211,8 +185,7 @@ def _copies(strips: Structure, copies: Sequence[Frame], centre: Floats) -> Any:
         s = np.linspace(strip.start, strip.end, 2 * len(strip.stations) + 1)
         points = strip.place(s, np.zeros_like(s), np.zeros_like(s))
         for frame in copies:
-            turn = np.stack([frame.x, frame.y, frame.normal], axis=1)
-            lines += [points @ turn.T + frame.origin, gap]
+            lines += [frame.place(points), gap]
     return go.Scatter3d(
         **xyz(on_screen(np.concatenate(lines), centre)),
         mode="lines",

@@ -63,7 +63,7 @@ def figure() -> Figure:
             "|F|": len(start.quads),
             "steps": len(result.steps),
             "span, m": SPAN / 1000.0,
-            "profile, mm": "60 x 4",
+            "profile, mm": design.profile.size,
             "profiles": len(parts),
             "studs": sum(len(kind.bodies) for kind in jointed.connectors),
         },

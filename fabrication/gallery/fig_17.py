@@ -35,7 +35,7 @@ def figure() -> Figure:
         ours={
             "segments": SEGMENTS.count,
             "angles, degrees": f"{angles.max():.1f} to {angles.min():.1f}",
-            "profile, mm": "2.5 x 100",
+            "profile, mm": f"{design.profile.thickness:g} x {design.profile.width:g}",
             "distinct strips": len(parts),
             "distinct strips unsymmetric": _distinct(unsymmetric),
             "slots, mm": f"{widths.min():.2f} to {widths.max():.2f}",

@@ -30,7 +30,7 @@ def figure() -> Figure:
     base, cables = _cables(rest, positions[0])
     mechanism = gs.Mechanism(mesh, base, cables)
     begin = time.perf_counter()
-    found = mechanism.motion([np.full(len(cables), _cable(p)) for p in positions])
+    found = mechanism.motion([np.full(len(cables), CABLE.length(p)) for p in positions])
     seconds = time.perf_counter() - begin
     lengths = [mesh.moved(x).edge_lengths / mesh.edge_lengths - 1.0 for x in found]
     stars = [
@@ -76,10 +76,6 @@ def _clash() -> float:
 
 def _nodes(position: gs.Position) -> Points:
     return gs.diagonal_meshes(position.control())[0].vertices
-
-
-def _cable(position: gs.Position) -> float:
-    return float(CABLE.lengths(position.radii[None], position.heights[None])[0])
 
 
 def _cables(nodes: Points, position: gs.Position) -> tuple[Indices, Indices]:

@@ -8,14 +8,14 @@ import numpy as np
 
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS
-from fabrication.export.connector_view import shape_mesh
 from fabrication.export.painter import Dots, Faces, Layer, Lines, View
+from fabrication.export.view_meshes import shape_mesh
 from fabrication.lamella import Lamella
 from fabrication.shapes import Prisms
 from fabrication.structures import Structure
 from gridshell.arrays import Floats, Indices, Points
 
-INK, BLACK, PALE, GREY = (0.11, 0.14, 0.18), (0.25, 0.29, 0.34), (0.96, 0.96, 0.94), (0.6, 0.6, 0.6)
+INK, BLACK, GREY = (0.11, 0.14, 0.18), (0.25, 0.29, 0.34), (0.6, 0.6, 0.6)
 RED, BLUE, GLASS = (0.80, 0.16, 0.14), (0.13, 0.34, 0.74), (0.72, 0.85, 0.90)
 
 FROM_ABOVE = View(np.eye(3))
@@ -35,11 +35,6 @@ def seen_from(*eye: float) -> View:
     right = np.cross([0.0, 0.0, 1.0], back)
     right /= np.linalg.norm(right)
     return View(np.stack([right, np.cross(back, right), back]))
-
-
-def quads(mesh: gs.QuadMesh, colour: Colour = PALE) -> Faces:
-    """The faces of a mesh."""
-    return Faces(mesh.vertices[mesh.quads], painted(colour, len(mesh.quads)))
 
 
 def edges(points: Points, pairs: Indices, colour: Colour = INK, width: float = 1.0) -> Lines:
@@ -71,14 +66,6 @@ def polygons(points: Points, faces: Indices) -> Floats:
     return np.asarray(points[np.take_along_axis(np.where(known, faces, 0), last, axis=1)])
 
 
-def net_lines(net: gs.DiagonalMesh, width: float = 1.2) -> tuple[Lines, ...]:
-    """The edges of both families in their colours."""
-    return tuple(
-        edges(net.vertices, net.edges[net.family == family], FAMILY_COLOURS[family], width)
-        for family in (1, 2)
-    )
-
-
 def lamella_faces(built: Structure) -> tuple[Faces, ...]:
     """All strips of a structure by family."""
     made = []
@@ -108,9 +95,7 @@ def connector_faces(connectors: Sequence[Prisms]) -> tuple[Faces, ...]:
         corners = []
         for body in kind.bodies:
             points, faces = shapes[body.shape]
-            x, y = body.frame.x, body.frame.y
-            placed = body.frame.origin + points @ np.stack([x, y, np.cross(x, y)])
-            corners.append(placed[faces])
+            corners.append(body.frame.place(points)[faces])
         if corners:
             found = np.concatenate(corners)
             made.append(Faces(found, painted(kind.colour, len(found))))

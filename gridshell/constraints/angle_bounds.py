@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from gridshell.arrays import Floats, Indices
-from gridshell.constraints.node_angle import NodeAngle
-from gridshell.solve import Evaluation, Pattern
+from gridshell.constraints.node_angle import cosines
+from gridshell.solve import Evaluation, Pattern, columns_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,23 +26,17 @@ class AngleBounds:
     quads: Indices
     lowest: Floats
     highest: Floats
-    _middle: NodeAngle = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        right = np.full(len(self.quads), np.pi / 2.0)
-        object.__setattr__(self, "_middle", NodeAngle(self.quads, right))
 
     def pattern(self) -> Pattern:
         """12 columns, one row."""
-        return self._middle.pattern()
+        return Pattern(columns_of(self.quads), 1)
 
     def lag(self, x: Floats) -> None:
         """Nothing is held still."""
 
     def evaluate(self, x: Floats, lag: None) -> Evaluation:
         """How far the cosines are outside, and the derivatives of those that are."""
-        found = self._middle.evaluate(x, None)
-        cosine = found.residual[:, 0] + np.cos(np.pi / 2.0)
+        cosine, values = cosines(x, self.quads)
         outside = cosine - np.clip(cosine, np.cos(self.highest), np.cos(self.lowest))
         active = outside != 0.0
-        return Evaluation(outside[:, None], found.values * active[:, None, None])
+        return Evaluation(outside[:, None], (values * active[:, None])[:, None])

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from gridshell.arrays import Floats, Indices, Points
-from gridshell.constraints.node_angle import NodeAngle
-from gridshell.solve import Evaluation, Pattern
+from gridshell.constraints.node_angle import cosines
+from gridshell.solve import Evaluation, Pattern, columns_of
 
 _STEP = 1e-5
 """Of the central differences of the field, in mean edges."""
@@ -30,27 +30,22 @@ class FieldAngle:
 
     quads: Indices
     wanted: Callable[[Points], Floats]
-    _right: NodeAngle = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        right = np.full(len(self.quads), np.pi / 2.0)
-        object.__setattr__(self, "_right", NodeAngle(self.quads, right))
 
     def pattern(self) -> Pattern:
         """12 columns, one row."""
-        return self._right.pattern()
+        return Pattern(columns_of(self.quads), 1)
 
     def lag(self, x: Floats) -> None:
         """Nothing is held still."""
 
     def evaluate(self, x: Floats, lag: None) -> Evaluation:
         """Differences of cosines; the field's gradient by central differences."""
-        found = self._right.evaluate(x, None)
+        cosine, values = cosines(x, self.quads)
         middle = x.reshape(-1, 3)[self.quads].mean(axis=1)
         step = _STEP * np.eye(3)
         places = np.concatenate([middle, *(middle + s for s in step), *(middle - s for s in step)])
         angle = self.wanted(places).reshape(7, -1)
         gradient = (angle[1:4] - angle[4:]).T / (2.0 * _STEP)
         by_middle = np.sin(angle[0])[:, None] * gradient / 4.0
-        residual = found.residual[:, 0] + np.cos(np.pi / 2.0) - np.cos(angle[0])
-        return Evaluation(residual[:, None], found.values + np.tile(by_middle, 4)[:, None])
+        residual = cosine - np.cos(angle[0])
+        return Evaluation(residual[:, None], (values + np.tile(by_middle, 4))[:, None])

@@ -36,17 +36,28 @@ class NodeAngle:
 
     def evaluate(self, x: Floats, lag: Floats | None) -> Evaluation:
         """Differences of cosines and their derivatives."""
-        d = _diagonals(x, self.quads)
-        length = _lengths(d) if lag is None else lag
-        d = d / length
-        cosine = np.einsum("mc,mc->m", d[:, 0], d[:, 1])
-        by_d = d[:, ::-1].copy()
-        if lag is None:
-            by_d -= cosine[:, None, None] * d
-        by_d /= length
-        values = np.stack([-by_d[:, 0], -by_d[:, 1], by_d[:, 0], by_d[:, 1]], axis=1)
-        residual = cosine - np.cos(self.angle)
-        return Evaluation(residual[:, None], values.reshape(len(d), 1, 12))
+        cosine, values = cosines(x, self.quads, lag)
+        return Evaluation((cosine - np.cos(self.angle))[:, None], values[:, None])
+
+
+def cosines(x: Floats, quads: Indices, lengths: Floats | None = None) -> tuple[Floats, Floats]:
+    """(m,) cosines between the diagonals of *quads* (eq. 4), and (m, 12) their derivatives.
+
+    Parameters
+    ----------
+    x : (3 n,) positions.
+    lengths : (m, 2, 1) of the diagonals where they are held still.
+    """
+    d = _diagonals(x, quads)
+    length = _lengths(d) if lengths is None else lengths
+    d = d / length
+    cosine = np.einsum("mc,mc->m", d[:, 0], d[:, 1])
+    by_d = d[:, ::-1].copy()
+    if lengths is None:
+        by_d -= cosine[:, None, None] * d
+    by_d /= length
+    values = np.stack([-by_d[:, 0], -by_d[:, 1], by_d[:, 0], by_d[:, 1]], axis=1)
+    return cosine, values.reshape(len(d), 12)
 
 
 def _diagonals(x: Floats, quads: Indices) -> Floats:

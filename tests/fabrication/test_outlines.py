@@ -111,3 +111,12 @@ def test_a_frame_cannot_be_changed():
     frame = Frame(np.zeros(3), np.eye(3)[0], np.eye(3)[1])
     with pytest.raises(ValueError, match="read-only"):
         frame.x[0] = 2.0
+
+
+@given(st.tuples(*[st.floats(-3.0, 3.0)] * 3), st.floats(-50.0, 50.0))
+def test_heights_are_distances_from_the_plane(turn, height):
+    x, y, _ = Rotation.from_rotvec(turn).as_matrix()
+    frame = Frame(np.array([1.0, 2.0, 3.0]), x, y)
+    (placed,) = frame.place(np.array([[4.0, 5.0, height]]))
+    assert frame.flat(placed) == pytest.approx([4.0, 5.0])
+    assert float(frame.distance(placed)) == pytest.approx(height)

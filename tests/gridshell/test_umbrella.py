@@ -154,3 +154,17 @@ def test_one_without_any_position_is_refused():
     with pytest.raises(gs.SettingError, match="No position") as info:
         _ = gs.Umbrella(12, 1000.0, (300.0, 40.0, 2000.0, 30.0, 500.0, 2000.0)).locks
     assert "fewer bays" in info.value.advice
+
+
+def test_angles_of_all_positions_are_those_of_each():
+    umbrella = gs.Umbrella(10, 1200.0, (700.0, 650.0, 700.0, 600.0))
+    positions = umbrella.positions(5)
+    every = umbrella.node_angles(np.array([p.radii for p in positions]))
+    assert every == pytest.approx(np.array([p.node_angles for p in positions]))
+
+
+def test_the_length_of_a_cable_is_the_distance_of_its_nodes():
+    position = gs.Umbrella(10, 1200.0, (700.0, 650.0, 700.0, 600.0)).position(0.4)
+    cable = gs.Cable(0, 4)
+    across, up = position.radii[4] - position.radii[0], position.heights[4] - position.heights[0]
+    assert cable.length(position) == pytest.approx(np.hypot(across, up))

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fabrication.export.gltf_space import linear, upright
 from fabrication.export.interchange.model import Item, Model
 
 
@@ -20,8 +21,7 @@ def write_glb(path: Path, model: Model) -> None:
     for layer, items in model.layers.items():
         scene.graph.update(frame_to=layer, frame_from=scene.graph.base_frame)
         for item in items:
-            upright = np.stack([item.points[:, 0], item.points[:, 2], -item.points[:, 1]], axis=1)
-            mesh = trimesh.Trimesh(upright / 1000.0, item.triangles, process=False)
+            mesh = trimesh.Trimesh(upright(item.points), item.triangles, process=False)
             mesh.visual = trimesh.visual.TextureVisuals(material=_material(item))
             mesh.metadata.update(item.numbers)
             scene.add_geometry(mesh, item.mark, geom_name=item.mark, parent_node_name=layer)
@@ -62,10 +62,9 @@ def _coloured(model: Model) -> list[object]:
 def _material(item: Item) -> object:
     import trimesh
 
-    linear = [round(255 * c**2.2) for c in item.colour]
     return trimesh.visual.material.PBRMaterial(
         name=item.layer,
-        baseColorFactor=[*linear, 255],
+        baseColorFactor=[*(round(255 * c) for c in linear(item.colour)), 255],
         metallicFactor=0.0,
         roughnessFactor=0.8,
         doubleSided=False,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fabrication.export.shell import columns
+from fabrication.export.view_meshes import columns
 from fabrication.lamella import Lamella
 from fabrication.parts import FlatPart
 from gridshell.arrays import Indices, Points

@@ -1,51 +1,16 @@
 import numpy as np
 import pytest
-import trimesh
 
 import fabrication as fab
-from fabrication.export.connector_view import connector_traces, shape_mesh
-from fabrication.flattening import corners
+from fabrication.export.connector_view import connector_traces
 from fabrication.joints.double_slot import StarWasher
 from fabrication.outlines import Frame
-from fabrication.shapes import Body, Prisms, Shape, circle
-
-SQUARE = np.array([[0.0, 0.0, 0.0], [40.0, 0.0, 0.0], [40.0, 30.0, 0.0], [0.0, 30.0, 0.0]])
+from fabrication.shapes import Body, Prisms, Shape
 
 
 def washer(angle=1.2):
     outline, hole = StarWasher(4.0, 18.0, 8.0, fab.S235).outline(angle, 15.0, 9.0)
     return Shape("W1", outline, 0.0, 4.0, (hole,))
-
-
-@pytest.mark.parametrize(
-    "shape",
-    [
-        Shape("block", SQUARE, -5.0, 12.0),
-        Shape("tube", SQUARE, 0.0, 60.0, (circle(8.0, 20.0, 15.0),)),
-        Shape("stud", circle(10.0), -3.0, 70.0),
-        washer(),
-    ],
-    ids=lambda shape: shape.mark,
-)
-def test_a_shape_is_a_closed_body_of_nearly_its_volume(shape):
-    points, faces = shape_mesh(shape)
-    mesh = trimesh.Trimesh(points, faces, process=False)
-    assert mesh.is_watertight
-    assert mesh.is_winding_consistent
-    assert mesh.volume == pytest.approx(shape.volume, rel=0.11)
-    assert mesh.bounds[:, 2] == pytest.approx([shape.low, shape.high])
-
-
-@pytest.mark.parametrize("bulge", [1.0, -1.0, 0.3, -2.0])
-def test_arcs_are_cut_into_chords_on_their_circle(bulge):
-    ring = corners(np.array([[0.0, 0.0, bulge], [10.0, 0.0, 0.0], [5.0, 30.0, 0.0]]))
-    on_arc = ring[: -2 + 1]
-    assert len(on_arc) > 2
-    radius = 10.0 * (1.0 + bulge**2) / (4.0 * abs(bulge))
-    hub = np.array([5.0, 5.0 * (1.0 - bulge**2) / (2.0 * bulge)])
-    assert np.linalg.norm(on_arc - hub, axis=1) == pytest.approx(radius)
-    middle = np.array([5.0, -5.0 * bulge])  # the sagitta is bulge times half the chord
-    assert np.linalg.norm(on_arc - middle, axis=1).min() < 0.4 * radius
 
 
 def bodies(count):
