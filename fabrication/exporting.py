@@ -10,6 +10,7 @@ from fabrication.export.interchange.meshes import write_glb, write_obj_groups, w
 from fabrication.export.interchange.missing import required
 from fabrication.export.interchange.model import Model
 from fabrication.export.interchange.rhino import write_3dm
+from fabrication.export_sections import ExportSection
 
 FORMATS: dict[str, Callable[[Path, Model], None]] = {
     "glb": write_glb,
@@ -34,8 +35,13 @@ def require_formats(formats: Sequence[str]) -> None:
             required(_LIBRARIES[form], form)
 
 
-def write_exports(folder: Path, formats: Sequence[str], model: Model) -> None:
-    """Write ``structure.glb`` and so on into *folder*.
+def write_exports(draft: Path, section: ExportSection | None, model: Callable[[], Model]) -> None:
+    """Write ``export/structure.glb`` and so on, where the project asks for any.
+
+    Parameters
+    ----------
+    draft : the package's folder.
+    model : makes what is written; not called where nothing is.
 
     Raises
     ------
@@ -44,6 +50,10 @@ def write_exports(folder: Path, formats: Sequence[str], model: Model) -> None:
     OutputError
         When a file cannot be written.
     """
+    if section is None:
+        return
+    folder = draft / "export"
     folder.mkdir(parents=True, exist_ok=True)
-    for form in dict.fromkeys(formats):
-        FORMATS[form](folder / f"structure.{form}", model)
+    made = model()
+    for form in dict.fromkeys(section.formats):
+        FORMATS[form](folder / f"structure.{form}", made)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 from pathlib import Path
 
@@ -103,6 +103,8 @@ class LamellaRoute:
             with keyed("shop"):
                 process = process_of(self.project.shop, profile)
             segmented = self._segmented(jointed)
+            if segmented is not None:
+                jointed = replace(jointed, bill=segmented.bill(jointed.bill))
             parts = parts_of(jointed, process.relief, copies=copies_of(self.project))
             strips = strip_sheets(parts, self.project, profile, bars)
             others = tuple(other_sheets(jointed, self.project, bars, self._coupons(jointed)))

@@ -10,8 +10,10 @@ from pathlib import Path
 import gridshell as gs
 from fabrication.assembling import Assembly
 from fabrication.errors import KernelError
+from fabrication.export.interchange.model import Model, lamella_model
 from fabrication.export.step_prism_reader import StepCopy, StepPrism
 from fabrication.export.step_reader import StepPart
+from fabrication.exporting import write_exports
 from fabrication.facade_route import STEP_FILE, FacadeSystem, facade_findings
 from fabrication.finding import Finding
 from fabrication.fitting import Fit, fit
@@ -124,12 +126,7 @@ class LamellaSystem:
             self._write_lists(draft)
         with clock.stage("papers"):
             self._write_papers(draft)
-            if self.project.export is not None:
-                from fabrication.export.interchange.model import lamella_model
-                from fabrication.exporting import write_exports
-
-                model = lamella_model(self.project.name, jointed, self.parts)
-                write_exports(draft / "export", self.project.export.formats, model)
+            write_exports(draft, self.project.export, self._model)
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):
@@ -217,6 +214,12 @@ class LamellaSystem:
         offset = self.process.offset
         return own.of_bars and finding.code == "outside-sheet" and finding.value <= offset + 1e-6
 
+    def _model(self) -> Model:
+        """All parts, for other programs."""
+        more = None if self.facade is None else self.facade.bodies
+        model = lamella_model(self.project.name, self.jointed, self.parts, more)
+        return model if self.segmented is None else model.repeated(self.segmented.segments.poses)
+
     def _write_lists(self, draft: Path) -> None:
         from fabrication.export.assembly_schedule import write_assembly
         from fabrication.export.bar_schedule import write_bars
@@ -227,11 +230,9 @@ class LamellaSystem:
         material = self.jointed.design.profile.material
         lines = [] if self.facade is None else self.facade.lines()
         write_schedule(draft / "parts.csv", self.parts, self.sheets[0].sheets, material, lines)
-        bill = self.jointed.bill
         if self.segmented is not None:
-            bill = self.segmented.bill(bill)
             self.segmented.write(draft, self.jointed.design)
-        write_bill(draft / "bill.csv", bill)
+        write_bill(draft / "bill.csv", self.jointed.bill)
         if any(part.drills for part in self.parts):
             write_drillings(draft / "drillings.csv", self.parts)
         write_bay_schedule(draft / "bays.csv", self.stress)

@@ -119,6 +119,15 @@ def nest(parts: Sequence[SheetPart], sheet: Sheet) -> tuple[NestedSheet, ...]:
     )
 
 
+def sheets_of(sheets: Sequence[NestedSheet]) -> dict[str, list[int]]:
+    """By mark the numbers of the sheets that hold such a part, in their order."""
+    found: dict[str, list[int]] = {}
+    for sheet in sheets:
+        for mark in dict.fromkeys(placement.part.mark for placement in sheet.placements):
+            found.setdefault(mark, []).append(sheet.number)
+    return found
+
+
 def sheet_bound(parts: Sequence[SheetPart], sheet: Sheet) -> int:
     """Sheets that the boxes of all *parts* need at least, by their area with the gaps."""
     gap = sheet.gap

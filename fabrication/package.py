@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from glob import escape
 from pathlib import Path
 
@@ -17,7 +17,7 @@ import numpy as np
 
 import gridshell as gs
 from fabrication.delivery import draft_folder, move_in
-from fabrication.exporting import require_formats
+from fabrication.exporting import FORMATS, require_formats
 from fabrication.finding import Finding
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.lamella_route import LamellaRoute
@@ -44,7 +44,7 @@ _STALE = (
     *(f"{name}.csv" for name in ("assembly", "bars", "bays", "beams", "bill", "flat")),
     *(f"{name}.csv" for name in ("drillings", "hanging", "motion")),
     *("motion.glb", "motion.html"),
-    *(f"export/structure.{form}" for form in ("glb", "ply", "obj", "3dm", "ifc")),
+    *(f"export/structure.{form}" for form in FORMATS),
     *(f"{name}.pdf" for name in ("drawings", "labels", "templates")),
 )
 
@@ -153,6 +153,9 @@ def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Desi
             rhombus=recipe.rhombus,
             reference=begun.surface,
         )
+        if project.umbrella is not None:  # D2 only fills it: its quads have no node angle
+            angles = np.degrees(gs.umbrella_of(result.control).node_angles)
+            quality = replace(quality, node_angle_deg=(float(angles.min()), float(angles.max())))
     system = route.build(result.control, clock)
     about_net = check_net(result, quality, kept=project.net.keep_to_surface)
     laid = () if begun.remeshed is None else begun.remeshed.findings

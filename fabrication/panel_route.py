@@ -13,6 +13,8 @@ from fabrication.angle_settings import angle_of
 from fabrication.beam_layout import Beam, BeamSection, beams
 from fabrication.bodies import structure_bodies
 from fabrication.errors import KernelError
+from fabrication.export.interchange.model import bodies_model
+from fabrication.exporting import write_exports
 from fabrication.finding import Finding
 from fabrication.grouping import group_names
 from fabrication.kernel_job import BodiesWork, Kernel, KernelResult
@@ -132,12 +134,9 @@ class PanelNetSystem:
             if self.beams:
                 write_beam_schedule(draft / "beams.csv", self.beams)
             drawn = [part for path in files for part in read_dxf(path)]
-        if self.project.export is not None:
-            from fabrication.export.interchange.model import bodies_model
-            from fabrication.exporting import write_exports
-
-            model = bodies_model(self.project.name, self.bodies)
-            write_exports(draft / "export", self.project.export.formats, model)
+            write_exports(
+                draft, self.project.export, lambda: bodies_model(self.project.name, self.bodies)
+            )
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):

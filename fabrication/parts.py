@@ -148,10 +148,7 @@ def parts_of(jointed: Jointed, relief: Relief = SQUARE, *, copies: int = 1) -> t
                 mark=lamella.mark,
                 outline=outline(developed.length, width, slots),
                 slots=slots,
-                labels=(
-                    *_labels(lamella.mark, developed, slots, cuts.holes, width),
-                    *_passing_labels(passing[lamella.mark], width),
-                ),
+                labels=_labels(lamella.mark, developed.length, cuts, passing[lamella.mark], width),
                 width=width,
                 thickness=thickness,
                 development=developed,
@@ -214,21 +211,29 @@ def _require_whole(mark: str, cuts: Cuts, wall: float) -> None:
 
 def _labels(
     mark: str,
-    developed: Development,
-    slots: Sequence[Slot],
-    holes: Sequence[Hole],
+    length: float,
+    cuts: Cuts,
+    passing: Sequence[tuple[float, str, str]],
     width: float,
 ) -> tuple[Label, ...]:
-    """Partner marks in the uncut half behind each slot; the own mark in the first free place."""
+    """The own mark in the first free place, what meets the strip, and where it is drilled."""
+    beside = tuple(_passing_labels(passing, width))
+    return (
+        _own_label(mark, length, cuts, beside, width),
+        *_slot_labels(cuts.slots, width),
+        *beside,
+        *_drill_ticks(cuts.drills, width),
+    )
+
+
+def _slot_labels(slots: Sequence[Slot], width: float) -> Iterator[Label]:
+    """Partner marks in the uncut half behind each slot."""
     largest = min(width / 8.0, 10.0)
-    labels = []
     for k, slot in enumerate(slots):
         beside = [abs(slot.x - s.x) for s in (*slots[max(k - 1, 0) : k], *slots[k + 1 : k + 2])]
         room = 0.9 * min(beside, default=np.inf) / (LETTER * len(slot.partner))
         behind = 0.2 * width if slot.edge is Edge.UPPER else 0.8 * width
-        labels.append(Label(slot.partner, slot.x, behind, min(largest, room)))
-    labels.insert(0, _own_label(mark, developed.length, slots, holes, width))
-    return tuple(labels)
+        yield Label(slot.partner, slot.x, behind, min(largest, room))
 
 
 def _passing_labels(passing: Sequence[tuple[float, str, str]], width: float) -> Iterator[Label]:
@@ -239,12 +244,21 @@ def _passing_labels(passing: Sequence[tuple[float, str, str]], width: float) -> 
         yield Label(others, x, width / 2.0, small, np.pi / 2.0)
 
 
+def _drill_ticks(drills: Sequence[Drill], width: float) -> Iterator[Label]:
+    """A short line at either edge where the middle of a drill comes."""
+    height = min(width / 8.0, 5.0)
+    for drill in drills:
+        for y in (height, width - height):
+            yield Label("|", drill.x, y, height)
+
+
 def _own_label(
-    mark: str, length: float, slots: Sequence[Slot], holes: Sequence[Hole], width: float
+    mark: str, length: float, cuts: Cuts, beside: Sequence[Label], width: float
 ) -> Label:
-    """The strip's own mark half-way up, between the first two cuts it fits between."""
-    taken = [(s.x - s.spread, s.x + s.spread) for s in slots]
-    taken += [(h.x - h.diameter / 2.0, h.x + h.diameter / 2.0) for h in holes]
+    """The strip's own mark half-way up, between the first two cuts or marks it fits between."""
+    taken = [(s.x - s.spread, s.x + s.spread) for s in cuts.slots]
+    taken += [(h.x - h.diameter / 2.0, h.x + h.diameter / 2.0) for h in cuts.holes]
+    taken += [(one.x - one.height, one.x + one.height) for one in beside]
     walls = [(0.0, 0.0), *sorted(taken), (length, length)]
     height = 1.5 * min(width / 8.0, 10.0)
     needed = 2.0 * (len(mark) + 1.0) * LETTER * height

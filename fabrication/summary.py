@@ -36,7 +36,7 @@ def _strips(report: Report) -> list[str]:
     raw = "bar" if "bars" in report["stock"] else "sheet"
     lines = [
         f"{segments}{plural(built['lamellas'], 'lamella')}{strips}, "
-        f"{plural(built['joints'], 'joint')}, "
+        f"{plural(built['joints'], 'joint')}{', ' if count == 1 else '; all of them '}"
         f"{length(built['total_length_m'])}, {mass(built['mass_kg'])} on "
         f"{plural(built['sheets'], raw)}; "
         f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",

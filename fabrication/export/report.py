@@ -29,7 +29,7 @@ from fabrication.export.strip_drawing import strip_drawing
 from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
 from fabrication.jointed import Jointed
-from fabrication.nesting import NestedSheet
+from fabrication.nesting import NestedSheet, sheets_of
 from fabrication.outlines import Frame
 from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
@@ -87,7 +87,7 @@ def write_report(
         bill=jointed.bill,
         connectors=[prisms for prisms in jointed.connectors if prisms.bodies],
         masses=[mass(part, strips.profile.material) for part in parts],
-        sheet_of={p.part.mark: sheet.number for sheet in sheets for p in sheet.placements},
+        sheets_of=sheets_of(sheets),
         sheet_count=len(sheets),
         raw=sorted({(sheet.sheet.length, sheet.sheet.width) for sheet in sheets}),
         clearance=clearance,

@@ -11,7 +11,7 @@ import numpy as np
 
 from fabrication.errors import OutputError
 from fabrication.jointed import BillLine
-from fabrication.nesting import NestedSheet
+from fabrication.nesting import NestedSheet, sheets_of
 from fabrication.parts import FlatPart
 from fabrication.stock import Material
 
@@ -76,11 +76,8 @@ def write_schedule(
     OutputError
         When the file cannot be written.
     """
-    on: dict[str, list[int]] = {}
-    for sheet in sheets:
-        for mark in {placement.part.mark for placement in sheet.placements}:
-            on.setdefault(mark, []).append(sheet.number)
-    rows = [_row(part, material, " ".join(map(str, on.get(part.mark, [])))) for part in parts]
+    on = sheets_of(sheets)
+    rows = [_row(part, material, " ".join(map(str, on.get(part.mark, ())))) for part in parts]
     rows += [_more(line) for line in more]
     write_csv(path, "The cut list", [COLUMNS, *rows])
 

@@ -26,13 +26,13 @@ def strip_drawing(part: FlatPart) -> dict[str, Any]:
 
     A station is its place along the strip, the place of its figure, and the figure. Labels are the
     marks of the partners and where they stand. A strip without slots shows the stations of its
-    holes.
+    holes, a tube those of its drills, which are dashed.
     """
     length, height = _STRIP
     along, across = length / part.length, height / part.width
     room = _room(part.slots, along)
     drawn = [_drawn(s, along, across, free) for s, free in zip(part.slots, room, strict=True)]
-    x = np.array([0.0, *(cut.x for cut in part.slots or part.holes), part.length])
+    x = np.array([0.0, *(cut.x for cut in part.slots or part.holes or part.drills), part.length])
     figures = [fixed(station, 1) for station in x.tolist()]
     places = (x * along).round(1).tolist(), _apart(x * along).round(1).tolist()
     return {
@@ -45,6 +45,7 @@ def strip_drawing(part: FlatPart) -> dict[str, Any]:
             for h in part.holes
         ],
         "bevels": _bevels(part, along),
+        "drills": [drill.x * along for drill in part.drills],
         "stations": list(zip(*places, figures, strict=True)),
         "labels": _labels(part.slots, along),
     }

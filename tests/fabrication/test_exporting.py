@@ -62,6 +62,57 @@ def test_formats_left_out_are_taken_away(package):
     assert [path.name for path in (package / "export").iterdir()] == ["structure.obj"]
 
 
+GLAZED = """
+name = "glazed"
+[surface]
+kind = "hypar"
+scale = 6000.0
+[patch]
+layout = "asymptotic"
+p = [0.05, 0.4]
+q = [-0.4, -0.05]
+lamellas = [3, 3]
+[net]
+anchor = "free"
+[profile]
+width = 100.0
+thickness = 2.5
+material = "stainless"
+[joint]
+kind = "slot"
+[sheet]
+length = 4000.0
+width = 1500.0
+[export]
+formats = ["glb", "ifc"]
+"""
+GLASS = """
+[facade]
+thickness = 8.0
+gap = 20.0
+material = "glass"
+"""
+SEGMENTS = """
+[segments]
+count = 4
+"""
+
+
+@pytest.mark.parametrize("more", ["", GLASS, SEGMENTS])
+def test_glass_and_segments_are_in_the_files(more, tmp_path):
+    path = tmp_path / "p.toml"
+    path.write_text(GLAZED + more)
+    report = fab.run(fab.read_project(path), tmp_path / "out", folder=tmp_path)
+    scene = trimesh.load(tmp_path / "out" / "export" / "structure.glb")
+    ifc = ifcopenshell.open(tmp_path / "out" / "export" / "structure.ifc")
+    copies = report["structure"].get("segments", 1)
+    glass = len(fab.read_prisms(tmp_path / "out" / "facade.step")) if more == GLASS else 0
+    assert (glass > 0) == (more == GLASS)
+    assert len(scene.geometry) == copies * report["structure"]["strips"] + glass
+    assert len(ifc.by_type("IfcMember")) == copies * report["structure"]["strips"]
+    assert len(ifc.by_type("IfcPlate")) == glass
+
+
 def test_a_missing_library_stops_before_anything_is_made(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "ifcopenshell", None)
     with pytest.raises(gs.SettingError, match="ifcopenshell"):

@@ -58,6 +58,9 @@ def test_an_umbrella_becomes_a_package_that_moves(written, tmp_path):
     assert report["motion"]["edge_length_change"] < 1e-6
     assert report["closure"]["max_mm"] < 0.05
     assert report["net"]["star_planarity"]["max"] < 1e-12
+    angles = np.degrees(gs.Umbrella(8, 900.0, (750.0, 750.0, 700.0)).position(0.4).node_angles)
+    told = report["net"]["node_angle_deg"]
+    assert (told["min"], told["max"]) == pytest.approx((angles.min(), angles.max()))
     without = UMBRELLA.replace("[motion]\npositions = 5\nsmallest = 20.0\nlargest = 160.0\n", "")
     run(read_project(written(without)), out)
     assert not list(Path(out).glob("motion.*"))

@@ -9,7 +9,7 @@ from shapely import Polygon, box
 import fabrication as fab
 from fabrication.cut import Edge, Slot, outline
 from fabrication.errors import StockError
-from fabrication.nesting import sheet_bound
+from fabrication.nesting import sheet_bound, sheets_of
 from fabrication.unroll import Development
 
 SHEET = fab.Sheet(6000.0, 767.0, margin=12.0, gap=8.0)
@@ -62,6 +62,14 @@ def test_parts_keep_the_gap_from_each_other(sizes):
 def test_sheets_are_numbered_from_one():
     sheets = fab.nest([part(i, 5000.0) for i in range(14)], SHEET)
     assert [sheet.number for sheet in sheets] == [1, 2, 3]
+
+
+def test_a_mark_is_on_every_sheet_that_holds_one():
+    sheets = fab.nest([part(1, 5000.0)] * 14 + [part(2, 100.0)], SHEET)
+    on = sheets_of(sheets)
+    for mark, numbers in on.items():
+        assert numbers == [s.number for s in sheets if mark in {p.part.mark for p in s.placements}]
+    assert on[part(1, 5000.0).mark] == [1, 2, 3]
 
 
 def test_short_strips_share_a_row_with_long_ones():

@@ -2,9 +2,11 @@
 
 import csv
 import json
+import re
 from collections import Counter
 
 import pytest
+from pypdf import PdfReader
 
 import fabrication as fab
 import gridshell as gs
@@ -66,6 +68,10 @@ def test_lists_and_sheets_hold_every_part_four_times(built):
     assert drawn == {row["mark"]: 4 for row in parts}
     welds = [float(table(folder / n / "bill.csv")[0]["quantity"]) for n in ("one", "four")]
     assert welds[1] == 4.0 * welds[0]
+    metres = f"{welds[1] / 1e3:.2f} m"
+    assert metres in PdfReader(folder / "four" / "drawings.pdf").pages[1].extract_text()
+    page = (folder / "four" / "report.html").read_text("utf-8")
+    assert f"{welds[1]:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}") in page
     one, four = reports["one"]["structure"], reports["four"]["structure"]
     assert four["mass_kg"] == pytest.approx(4.0 * one["mass_kg"], rel=1e-5)
     assert four["total_length_m"] == pytest.approx(4.0 * one["total_length_m"], abs=2e-3)
@@ -103,6 +109,22 @@ def test_without_segments_nothing_is_said_of_them(built):
     assert "segments" not in reports["one"]
     assert not (folder / "one" / "hanging.csv").exists()
     assert len(table(folder / "four" / "hanging.csv")) == reports["four"]["structure"]["nodes"]
+
+
+def test_the_cut_list_counts_the_pieces_and_names_all_their_sheets(built):
+    folder, reports = built
+    page = (folder / "four" / "report.html").read_text("utf-8")
+    rows = re.findall(r"<tr>(.*?)</tr>", page[page.index('id="cut-list"') :], re.DOTALL)
+    cells = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.DOTALL) for row in rows]
+    heading = [re.sub(r"<[^>]*>", "", cell).strip() for cell in cells[0]]
+    pieces, sheet = heading.index("Pieces"), heading.index("Sheet")
+    parts = table(folder / "four" / "parts.csv")
+    for part, row in zip(parts, cells[1:], strict=False):
+        assert row[pieces] == "4"
+        assert row[sheet] == part["sheet"]
+    mass = heading.index("Mass, kg")
+    total = next(row for row in cells if row[0] == f"{len(parts)} strips")
+    assert float(total[mass]) == pytest.approx(reports["four"]["structure"]["mass_kg"], rel=1e-2)
 
 
 def test_the_files_of_segments_go_when_they_are_gone(tmp_path):

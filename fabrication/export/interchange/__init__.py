@@ -1,6 +1,5 @@
-"""Files that other programs open: GLB, PLY, OBJ, .3dm, IFC4, BTLx, DSTV NC1.
+"""Files that other programs open: GLB, PLY, OBJ, .3dm, IFC4.
 
 What is built becomes a :class:`~fabrication.export.interchange.model.Model`, plain data: every part
-with its mark, layer, mesh, axis and numbers. One module per format writes it; shops' formats take
-the flat parts themselves.
+with its mark, layer, mesh, axis and numbers. One module per format writes it.
 """

@@ -23,5 +23,5 @@ def required(library: str, form: str) -> Any:
             f"The format needs the library {library}, which is not installed",
             where="export.formats",
             value=form,
-            advice="pip install 'gridshell[interchange]'",
+            advice="pip install '.[interchange]', in the folder of gridshell",
         ) from None

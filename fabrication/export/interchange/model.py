@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fabrication.colours import FAMILY_COLOURS
-from fabrication.export.connector_view import shape_mesh
 from fabrication.export.interchange.strip_mesh import strip_mesh
+from fabrication.export.view_meshes import shape_mesh
 from fabrication.jointed import Jointed
 from fabrication.outlines import Frame
 from fabrication.parts import FlatPart
-from fabrication.shapes import Bodies, Colour, Prisms
+from fabrication.shapes import Bodies, Colour, joined
 from gridshell.arrays import Indices, Points
 
 Value = str | float | int
@@ -65,9 +65,30 @@ class Model:
             found.setdefault(item.layer, []).append(item)
         return found
 
+    def repeated(self, poses: Sequence[Frame]) -> Model:
+        """The same at every one of *poses*; names begin with "segment-1" and so on."""
+        items = tuple(
+            replace(
+                item,
+                mark=f"segment-{number} {item.mark}",
+                points=pose.place(item.points),
+                axis=None if item.axis is None else pose.place(item.axis),
+            )
+            for number, pose in enumerate(poses, start=1)
+            for item in self.items
+        )
+        nodes = tuple(
+            (f"segment-{number} {name}", pose.place(place))
+            for number, pose in enumerate(poses, start=1)
+            for name, place in self.nodes
+        )
+        return replace(self, items=items, nodes=nodes)
 
-def lamella_model(name: str, jointed: Jointed, parts: Sequence[FlatPart]) -> Model:
-    """Strips with their slots, and connectors; of tubes the outer sides."""
+
+def lamella_model(
+    name: str, jointed: Jointed, parts: Sequence[FlatPart], more: Bodies | None = None
+) -> Model:
+    """Strips with their slots, connectors, and *more* bodies; of tubes the outer sides."""
     density = jointed.design.profile.material.density
     items = []
     for strip, part in zip(jointed.strips.lamellas, parts, strict=True):
@@ -94,32 +115,20 @@ def lamella_model(name: str, jointed: Jointed, parts: Sequence[FlatPart]) -> Mod
                 },
             )
         )
-    items += [item for kind in jointed.connectors for item in _prism_items(kind)]
+    items += _body_items(joined(*jointed.connectors))
+    items += () if more is None else _body_items(more)
     nodes = tuple((node.name, np.asarray(node.position)) for node in jointed.design.nodes)
     return Model(name, tuple(items), nodes)
 
 
 def bodies_model(name: str, bodies: Bodies) -> Model:
     """Panels, plates and connectors of a planar net."""
-    items = []
+    return Model(name, tuple(_body_items(bodies)))
+
+
+def _body_items(bodies: Bodies) -> Iterator[Item]:
+    meshes = [shape_mesh(shape) for shape in bodies.shapes]
     for kind in bodies.kinds:
-        shapes = {body.shape: shape_mesh(bodies.shapes[body.shape]) for body in kind.bodies}
-        items += [
-            _placed(body.mark, kind.name, kind.colour, shapes[body.shape], body.frame)
-            for body in kind.bodies
-        ]
-    return Model(name, tuple(items))
-
-
-def _prism_items(kind: Prisms) -> Iterator[Item]:
-    shapes = [shape_mesh(shape) for shape in kind.shapes]
-    for body in kind.bodies:
-        yield _placed(body.mark, kind.name, kind.colour, shapes[body.shape], body.frame)
-
-
-def _placed(
-    mark: str, layer: str, colour: Colour, mesh: tuple[Points, Indices], frame: Frame
-) -> Item:
-    points, triangles = mesh
-    placed = frame.origin + points @ np.stack([frame.x, frame.y, frame.normal])
-    return Item(mark, layer, colour, placed, triangles)
+        for body in kind.bodies:
+            points, triangles = meshes[body.shape]
+            yield Item(body.mark, kind.name, kind.colour, body.frame.place(points), triangles)

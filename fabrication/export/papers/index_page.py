@@ -35,7 +35,7 @@ def index_page(
     profile = jointed.design.profile
     count = parts[0].quantity if parts else 1
     mass = sum(part.quantity * part.volume for part in parts) * profile.material.density * 1e-9
-    connectors = sum(len(kind.bodies) for kind in jointed.connectors)
+    connectors = count * sum(len(kind.bodies) for kind in jointed.connectors)
     facts: tuple[str, ...] = (
         f"{len(jointed.design.lamellas)} lamellas, {len(jointed.design.nodes)} nodes",
         f"{len(parts)} strips of {profile.size} mm, "
@@ -44,8 +44,8 @@ def index_page(
         f"{connectors} connectors",
     )
     if count > 1:
-        told = f"{count} equal segments: plans and nodes show one of them, strips tell how many"
-        facts = (*facts, f"{told}; metres and mass are those of all")
+        told = f"{count} equal segments: plans, nodes and the list of strips show one of them"
+        facts = (*facts, f"{told}; metres, mass, connectors and the bill are those of all")
 
     def draw(pen: Pen, area: Area) -> None:
         x, y = area.x + 12.0, area.y + area.height - 22.0

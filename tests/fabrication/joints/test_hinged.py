@@ -40,6 +40,21 @@ def test_every_tube_is_drilled_at_every_node_it_passes(design, jointed):
     assert sum(f.feature is Feature.DRILL for f in jointed.fixtures) == 2 * len(design.nodes)
 
 
+def test_the_middle_of_every_drill_is_engraved_at_both_edges(parts):
+    for part in parts:
+        ticks = sorted((label.x, label.y) for label in part.labels if label.text == "|")
+        assert [x for x, _ in ticks] == [drill.x for drill in part.drills for _ in range(2)]
+        assert all(0.0 < min(y, TUBE.width - y) <= 5.0 for _, y in ticks)
+
+
+def test_the_own_mark_of_a_tube_keeps_off_its_partners(parts):
+    for part in parts:
+        own, *others = part.labels
+        reach = own.height * len(own.text) / 2.0
+        assert own.text == part.mark
+        assert min(abs(label.x - own.x) for label in others) > reach + others[0].height / 2.0
+
+
 def test_the_two_tubes_of_a_node_lie_on_two_levels_with_the_gap_between(design, jointed):
     places = {}
     for fixture in jointed.fixtures:

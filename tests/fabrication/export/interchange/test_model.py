@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 import trimesh
 
+import fabrication as fab
+from fabrication.bodies import structure_bodies
 from fabrication.export.interchange.model import lamella_model
 
 
@@ -40,6 +42,30 @@ def test_layers_keep_the_order_of_lists(model):
     layers = model.layers
     assert list(layers)[:2] == ["family A", "family B"]
     assert sum(map(len, layers.values())) == len(model.items)
+
+
+def test_more_bodies_stand_on_layers_of_their_own(slotted, model, tower):
+    more = structure_bodies(tower)
+    both = lamella_model("glazed", *slotted, more)
+    added = both.items[len(model.items) :]
+    assert len(added) == sum(len(kind.bodies) for kind in more.kinds) > 0
+    assert {item.layer for item in added} == {kind.name for kind in more.kinds if kind.bodies}
+
+
+def test_segments_are_copies_by_their_poses(model):
+    segments = fab.Segments(4, centre=(500.0, -200.0))
+    whole = model.repeated(segments.poses)
+    assert len(whole.items) == 4 * len(model.items)
+    assert len({item.mark for item in whole.items}) == len(whole.items)
+    for number in range(4):
+        item, copy = model.items[0], whole.items[number * len(model.items)]
+        assert copy.mark == f"segment-{number + 1} {item.mark}"
+        assert copy.points == pytest.approx(segments.placed(item.points, number), abs=1e-9)
+        assert copy.axis == pytest.approx(segments.placed(item.axis, number), abs=1e-9)
+        assert copy.numbers == item.numbers
+    assert whole.nodes[-1][1] == pytest.approx(
+        segments.placed(model.nodes[-1][1][None], 3)[0], abs=1e-9
+    )
 
 
 def test_an_assembly_of_no_parts_is_refused(slotted):
