@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import gridshell as gs
 from fabrication import cli
 from fabrication.package import run
 from fabrication.project import read_project
@@ -54,6 +55,18 @@ def test_a_starting_point_with_a_surface_of_ones_own(command, tmp_path):
     for name in ("surface", "panels"):
         assert command(name)[0] == 0
         assert read_project(tmp_path / f"{name}.toml").name == name
+
+
+def test_a_starting_point_with_a_mesh_drawn_elsewhere(command, tmp_path):
+    patch = gs.AsymptoticPatch(p=(-0.6, 0.6), q=(-0.6, 0.6), lamellas=(8, 8))
+    net = gs.diagonal_meshes(gs.control_patch(gs.Hypar(4000.0), patch))[0]
+    drawn = gs.quads_of(net)
+    drawn = drawn.moved(drawn.vertices.round(-1))  # to the centimetre
+    gs.write_obj(tmp_path / "net.obj", drawn, unit=gs.Unit.named("m"))
+    assert command("mesh")[0] == 0
+    report = run(read_project(tmp_path / "mesh.toml"), tmp_path / "out", folder=tmp_path)
+    assert report["net"]["star_planarity"]["max"] < 1e-6
+    assert not [f for f in report["findings"] if f["severity"] == "error"]
 
 
 def test_no_file_is_overwritten(command, tmp_path):
