@@ -191,6 +191,12 @@ from .patch import SingularPatch as SingularPatch
 from .patch import (
     control_patch as control_patch,
 )
+from .quad_figures import (
+    QuadFigures as QuadFigures,
+)
+from .quad_figures import (
+    quad_figures as quad_figures,
+)
 from .quality import (
     NetQuality as NetQuality,
 )

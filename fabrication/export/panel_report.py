@@ -8,11 +8,20 @@ from typing import Any
 
 import numpy as np
 
+import gridshell as gs
 from fabrication.colours import css
 from fabrication.errors import OutputError
 from fabrication.export.panel_schedule import schedule_rows
-from fabrication.export.panel_view import group_colours, panel_figure
-from fabrication.export.report import shared
+from fabrication.export.report import middle, shared
+from fabrication.export.scene.layers import Scene, on_screen
+from fabrication.export.scene.net import net_layers
+from fabrication.export.scene.panels import (
+    group_colours,
+    panel_layers,
+    plate_colouring,
+    support_layers,
+)
+from fabrication.export.scene.strips import axis_layers
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import COLOURS, PanelStructure
 
@@ -47,7 +56,8 @@ def write_panel_report(
         name=name,
         report=report,
         pictures=pictures,
-        figure=panel_figure(built),
+        scene=panel_scene(built),
+        patterns={},
         system=built.system,
         rows=schedule_rows(built, panel_sheets, plate_sheets, star_sheets),
         panel_groups=[
@@ -76,6 +86,15 @@ def write_panel_report(
         raise OutputError(
             "The report cannot be written", where=str(path), value=error.strerror or ""
         ) from None
+
+
+def panel_scene(built: PanelStructure, net: gs.ControlMesh | None = None) -> Scene:
+    """Panels, plates, connectors and marks; *net* adds the layers of the control mesh."""
+    vertices = built.mesh.vertices
+    centre = middle(vertices)
+    layers = [*panel_layers(built, centre), *support_layers(built, centre)]
+    layers += [] if net is None else net_layers(net, centre)
+    return Scene([*layers, *axis_layers(on_screen(vertices, centre))], plate_colouring(built))
 
 
 def _sheets(sheets: Sequence[NestedSheet], prefix: str) -> list[dict[str, Any]]:

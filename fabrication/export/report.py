@@ -3,13 +3,13 @@
 The page shows what ``report.json`` and the parts hold: the shell to turn, to hover over and to
 colour, the key figures, the findings, the stress by strip, the bill, the cut list and the longest
 strip. Words and definitions live in
-``report.html``, geometry and the writing of numbers here. plotly.js is inlined, and the page's own
-policy forbids every request.
+``report.html``, what the 3D view shows in ``scene``, the writing of numbers here. Scripts are
+inlined, and the page's own policy forbids every request.
 """
 
 from __future__ import annotations
 
-import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,14 +17,18 @@ from typing import Any
 import numpy as np
 from jinja2 import ChainableUndefined, Environment, FileSystemLoader
 from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 
+import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.errors import OutputError
-from fabrication.export.connector_view import connector_traces
+from fabrication.export.scene.bodies import connector_layers
+from fabrication.export.scene.layers import Layer, Scene, on_screen
+from fabrication.export.scene.net import net_layers
+from fabrication.export.scene.page import as_json, deflated, scripts, style
+from fabrication.export.scene.panels import panel_layers
+from fabrication.export.scene.strips import axis_layers, strip_layers
 from fabrication.export.schedule import mass
-from fabrication.export.shell import shell_figure
-from fabrication.export.stress_view import colour_scale, net_words, shades, stress_rows
+from fabrication.export.stress_view import net_words, stress_colourings, stress_rows
 from fabrication.export.strip_drawing import strip_drawing
 from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
@@ -35,6 +39,7 @@ from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress, bay_stress
 from fabrication.stress_checks import stress_section
+from gridshell.arrays import Floats, Points
 
 
 def write_report(
@@ -78,9 +83,8 @@ def write_report(
         name=name,
         report=report,
         pictures=pictures,
-        figure=_figure(jointed, parts, stress, facade, copies),
-        shades=_json({"scale": colour_scale(), "shades": shades(stress)}),
-        scale=colour_scale(),
+        scene=lamella_scene(jointed, parts, stress, facade=facade, copies=copies),
+        patterns=flat_patterns(jointed, parts),
         stress=stress_section(stress),
         net_section=net_words(stress),
         stress_rows=stress_rows(strips, stress),
@@ -107,29 +111,51 @@ def write_report(
         ) from None
 
 
-def _figure(
+def lamella_scene(
     jointed: Jointed,
     parts: Sequence[FlatPart],
     stress: BayStress,
-    facade: PanelStructure | None,
-    copies: Sequence[Frame],
-) -> Any:
-    """Strips and connectors, and the panels above them: hidden until they are asked for."""
-    figure = shell_figure(jointed, parts, stress, copies)
-    positions = np.array([node.position for node in jointed.design.nodes])
-    centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
-    figure.add_traces(connector_traces(jointed.connectors, centre))
+    *,
+    facade: PanelStructure | None = None,
+    copies: Sequence[Frame] = (),
+    net: gs.ControlMesh | None = None,
+) -> Scene:
+    """Strips, nodes, connectors, and the panels above them, hidden until they are asked for.
+
+    Parameters
+    ----------
+    net : the control mesh; its layers are left out without.
+    """
+    nodes = np.array([node.position for node in jointed.design.nodes])
+    centre = middle(nodes)
+    layers: list[Layer] = strip_layers(jointed, parts, stress, centre, copies)
+    layers += connector_layers(jointed.connectors, centre)
     if facade is not None:
-        from fabrication.export.panel_view import panel_traces
+        layers += panel_layers(facade, centre, visible=False)
+    if net is not None:
+        layers += net_layers(net, centre)
+    return Scene([*layers, *axis_layers(on_screen(nodes, centre))], stress_colourings(stress))
 
-        for trace in panel_traces(facade, centre):
-            figure.add_trace(trace.update(visible="legendonly"))
-    return figure
+
+def middle(points: Points) -> Floats:
+    """(3,) of the box around *points* (n, 3)."""
+    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2.0)
 
 
-def _json(value: Any) -> Markup:
-    """*value* for a script of the page."""
-    return Markup(json.dumps(value, allow_nan=False).replace("<", "\\u003c"))
+def flat_patterns(jointed: Jointed, parts: Sequence[FlatPart]) -> dict[str, str]:
+    """The drawing of every flat strip, an SVG, by its mark."""
+    families = [lamella.family for lamella in jointed.strips.lamellas]
+    return {
+        part.mark: strip_svg(part, family) for part, family in zip(parts, families, strict=True)
+    }
+
+
+def strip_svg(part: FlatPart, family: int) -> str:
+    """The drawing of one flat strip as an SVG that stands alone."""
+    drawn: str = _template("strip.html").module.strip(
+        strip_drawing(part), css(FAMILY_COLOURS[family])
+    )
+    return re.sub(r"[ \n]+", " ", drawn).strip()
 
 
 def shared(
@@ -138,14 +164,16 @@ def shared(
     name: str,
     report: Mapping[str, Any],
     pictures: Sequence[Mapping[str, Any]],
-    figure: Any,
+    scene: Scene,
+    patterns: Mapping[str, str],
     **more: Any,
 ) -> str:
     """A report's page: *template* with what all reports share, and *more* of its own.
 
     Parameters
     ----------
-    figure : plotly's, of the 3D view.
+    scene : of the 3D view.
+    patterns : SVG of flat parts, by their marks.
     """
     level, verdict = _verdict(report.get("findings"))
     page: str = _template(template).render(
@@ -155,8 +183,10 @@ def shared(
         verdict=verdict,
         groups=_groups(report.get("findings") or ()),
         pictures=[{**picture, "svg": Markup(picture["svg"])} for picture in pictures],
-        figure=Markup(figure.to_json().replace("<", "\\u003c")),
-        plotly=Markup(get_plotlyjs()),
+        scene=as_json(scene.packed()),
+        patterns=deflated(patterns),
+        scripts=scripts(),
+        viewer_style=style(),
         **more,
     )
     return page

@@ -13,15 +13,19 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from fabrication.export.painter import Dots, Faces, Layer, Lines, View, corners, hexadecimal
-from fabrication.export.shell import camera, on_screen, xyz
 from fabrication.export.stages import Stage
 from fabrication.export.words import fixed, number, plural
-from gridshell.arrays import Floats, Indices
+from gridshell.arrays import Floats, Indices, Points
 
 _LIGHT = {"ambient": 0.9, "diffuse": 0.2, "specular": 0.03, "roughness": 0.9, "fresnel": 0.02}
 
 _AHEAD = 2e-3
 """Of the size: lines stand so far before their faces, dots twice, seen from where it begins."""
+
+_EYE, _FIELD, _ASPECT = (0.62, -0.64, 0.46), np.pi / 4.0, 1.5
+"""Towards the camera; plotly's own vertical field of view; the frame's width over its height."""
+
+_TOP = np.array([0.0, 0.0, 1.0])
 
 
 def stage_page(
@@ -69,9 +73,9 @@ def stage_figure(found: Sequence[Stage], view: View) -> Any:
     ]
     x, y, z = view.frame[2].tolist()
     top = view.frame[1]
-    seen = camera(on_screen(everything, centre).astype(np.float64), (x, y, z), top)
+    seen = _camera(_on_screen(everything, centre).astype(np.float64), (x, y, z), top)
     return go.Figure(
-        traces, {"template": "none", "scene": {"camera": {**seen, "up": xyz(np.round(top, 4))}}}
+        traces, {"template": "none", "scene": {"camera": {**seen, "up": _xyz(np.round(top, 4))}}}
     )
 
 
@@ -81,14 +85,14 @@ def _traces(layer: Layer, centre: Floats, ahead: Floats, letter: str) -> list[An
     if isinstance(layer, Faces):
         return [_solid(layer, centre, letter)]
     step = {Lines: 1.0, Dots: 2.0}[type(layer)] * ahead
-    points = on_screen(corners(layer).reshape(-1, 3) + step, centre)
+    points = _on_screen(corners(layer).reshape(-1, 3) + step, centre)
     about = {"meta": letter, "hoverinfo": "skip", "showlegend": False}
     if isinstance(layer, Dots):
         marker = {"size": 1.6 * layer.radius, "color": hexadecimal(layer.colours[0])}
-        return [go.Scatter3d(**xyz(points), mode="markers", marker=marker, **about)]
+        return [go.Scatter3d(**_xyz(points), mode="markers", marker=marker, **about)]
     return [
         go.Scatter3d(
-            **xyz(_with_gaps(points.reshape(-1, 2, 3)[rows])),
+            **_xyz(_with_gaps(points.reshape(-1, 2, 3)[rows])),
             mode="lines",
             line={"color": colour, "width": 2.0 * layer.width},
             **about,
@@ -115,7 +119,7 @@ def _solid(layer: Faces, centre: Floats, letter: str) -> Any:
     """Faces as a fan of triangles each, every one with its colour."""
     count, sides = layer.corners.shape[:2]
     points, number_of = np.unique(
-        on_screen(layer.corners.reshape(-1, 3), centre), axis=0, return_inverse=True
+        _on_screen(layer.corners.reshape(-1, 3), centre), axis=0, return_inverse=True
     )
     faces = number_of.reshape(count, sides)
     fan = np.concatenate([faces[:, [0, k, k + 1]] for k in range(1, sides - 1)])
@@ -125,7 +129,7 @@ def _solid(layer: Faces, centre: Floats, letter: str) -> Any:
     one = len(set(colours.tolist())) == 1
     paint = {"color": colours[0]} if one else {"facecolor": colours.tolist()}
     return go.Mesh3d(
-        **xyz(points),
+        **_xyz(points),
         **dict(zip("ijk", fan.T.astype(np.int32), strict=True)),
         **paint,
         flatshading=True,
@@ -133,3 +137,39 @@ def _solid(layer: Faces, centre: Floats, letter: str) -> Any:
         hoverinfo="skip",
         meta=letter,
     )
+
+
+def _on_screen(points: Points, centre: Floats) -> Any:
+    """*points* (n, 3) mm as metres from *centre*: single precision, rounded to 0.1 mm."""
+    return np.round((points - centre) / 1e3, 4).astype(np.float32)
+
+
+def _xyz(points: Any) -> dict[str, Any]:
+    """*points* (n, 3), or one (3,), as plotly's x, y and z."""
+    return dict(zip("xyz", points.T, strict=True))
+
+
+def _camera(
+    points: Points, eye: tuple[float, float, float] = _EYE, top: Floats = _TOP
+) -> dict[str, Any]:
+    """Where the camera stands to see all *points* (n, 3) as large as the frame allows.
+
+    plotly's unit is the cube root of the bounding box's volume, its origin the box's middle.
+
+    Parameters
+    ----------
+    eye, top : directions (3,) to the camera and of what shall be upright in the picture.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    back = np.array(eye) / np.linalg.norm(eye)
+    right = np.cross(top, back) / np.linalg.norm(np.cross(top, back))
+    frame = np.stack([right, np.cross(back, right), back], axis=1)
+    x = (points - (low + high) / 2.0) @ frame / np.cbrt(np.prod(np.maximum(high - low, 1e-3)))
+    reach = np.tan(_FIELD / 2.0) * np.array([_ASPECT, 1.0])
+    centre = np.zeros(2)
+    for _ in range(5):
+        distance = ((np.abs(x[:, :2] - centre) / reach).max(axis=1) + x[:, 2]).max()
+        seen = (x[:, :2] - centre) / (distance - x[:, 2:])
+        centre += (seen.min(axis=0) + seen.max(axis=0)) / 2.0 * distance
+    place = np.r_[centre, 1.05 * distance]
+    return {"eye": _xyz(frame @ place), "center": _xyz(frame[:, :2] @ centre)}

@@ -7,17 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from fabrication.export.scene.layers import Colouring
 from fabrication.export.words import fixed, number
 from fabrication.strength import BayStress
 from fabrication.structures import Structure
 from gridshell.arrays import Floats
 
-_SCALE = ((0.0, "#dfe7ee"), (0.35, "#f3d9a0"), (0.7, "#e08a3c"), (1.0, "#a3161f"))
-"""From little to much."""
 
-
-def shades(stress: BayStress) -> list[dict[str, Any]]:
-    """What the strips can be coloured by: name, a value in 0 to 1 per bay, the ends in words.
+def stress_colourings(stress: BayStress) -> list[Colouring]:
+    """What the strips can be coloured by, bay by bay.
 
     Utilisation has a fixed scale, so that red means used up; the others run to their own largest.
     """
@@ -34,19 +32,9 @@ def shades(stress: BayStress) -> list[dict[str, Any]]:
         ("Strong-axis bending", stress.edgewise, most, "0", f"{number(most, 3)} N/mm²"),
     )
     return [
-        {
-            "name": name,
-            "values": np.round(np.clip(values / (top or 1.0), 0.0, 1.0), 3).tolist(),
-            "low": low,
-            "high": high,
-        }
+        Colouring(name, "bays", values / (top or 1.0), low, high)
         for name, values, top, low, high in scales
     ]
-
-
-def colour_scale() -> list[list[Any]]:
-    """Of :func:`shades`, as plotly takes it."""
-    return [[place, colour] for place, colour in _SCALE]
 
 
 def stress_rows(strips: Structure, stress: BayStress) -> list[dict[str, Any]]:

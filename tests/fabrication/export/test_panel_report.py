@@ -1,4 +1,3 @@
-import json
 import re
 
 import numpy as np
@@ -6,9 +5,9 @@ import pytest
 
 import fabrication as fab
 from fabrication.errors import OutputError
-from fabrication.export.panel_report import write_panel_report
+from fabrication.export.panel_report import panel_scene, write_panel_report
 from fabrication.export.panel_schedule import COLUMNS, schedule_rows, write_panel_schedule
-from fabrication.export.panel_view import group_colours, panel_figure
+from fabrication.export.scene.panels import group_colours
 from fabrication.sheet_parts import panel_piece, plate_piece
 
 
@@ -68,7 +67,7 @@ def test_the_page_shows_the_figures_and_asks_nothing_of_the_network(page):
     assert "A &lt;shell&gt;" in page
     for figure in ("1.250", "3.500°", "66.0 to 114.0", "12 groups within 0.5 mm"):
         assert figure in page
-    own = page.replace(re.search(r"<script>.*?</script>", page, re.DOTALL)[0], "")
+    own = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
     assert not re.search(r"""(src|href)=["']http""", own)
     assert "default-src 'none'" in page
 
@@ -111,20 +110,21 @@ def test_the_csv_has_a_line_for_every_row(leaning, tmp_path):
         write_panel_schedule(tmp_path / "none" / "parts.csv", leaning, *sheets(leaning))
 
 
-def test_the_view_has_every_panel_plate_and_connector_to_hover_over(leaning):
-    figure = json.loads(panel_figure(leaning).to_json())
-    named = {trace["name"]: trace for trace in figure["data"]}
-    assert len(named["Panels"]["meta"]["texts"]) == 12
-    (plates,) = (trace for name, trace in named.items() if name.startswith("Plates"))
-    assert "out of plane (red)" in plates["name"]
-    assert len(plates["meta"]["texts"]) == 31
-    assert any("N20" in text for text in named["Connectors"]["meta"]["texts"])
+def test_the_view_has_every_panel_plate_and_connector_to_point_at(leaning):
+    scene = panel_scene(leaning).packed()
+    named = {layer["id"]: layer for layer in scene["layers"]}
+    for name, parts in (("panels", leaning.panels), ("plates", leaning.plates)):
+        assert [about["mark"] for about in named[name]["parts"]] == [part.mark for part in parts]
+        assert len(named[name]["sizes"]) == len(parts)
+    assert any("N20" in about["mark"] for about in named["connectors"]["parts"])
+    (off,) = scene["maps"]
+    top = max(plate.out_of_plane for plate in leaning.plates)
+    assert off["name"] == "Plates out of plane"
+    assert float(off["high"].removesuffix(" mm")) == pytest.approx(top, rel=5e-3)
 
 
 def test_flat_plates_are_of_one_colour(tower):
-    figure = json.loads(panel_figure(tower).to_json())
-    (plates,) = (trace for trace in figure["data"] if trace["name"].startswith("Plates"))
-    assert plates["name"] == "Plates, flat"
+    assert panel_scene(tower).packed()["maps"] == []
 
 
 def test_groups_of_several_have_colours_of_their_own(tower, leaning):

@@ -1,16 +1,18 @@
 import base64
 import json
 import re
+import zlib
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from plotly.offline import get_plotlyjs
 
 import gridshell as gs
 from fabrication.cut import Floor, Hole, Relief
 from fabrication.errors import OutputError
 from fabrication.export.report import write_report
+from fabrication.export.scene.page import scripts
 from fabrication.export.schedule import mass
 from fabrication.jointed import BillLine
 from fabrication.joints import DoubleSlotJoint, SlotJoint, StarWasher
@@ -97,30 +99,38 @@ def page(tmp_path, catenoid):
         path = tmp_path / "report.html"
         write_report(path, name=name, report=report, jointed=design[0], parts=design[1])
         text = path.read_text(encoding="utf-8")
-        assert text.count(get_plotlyjs()) == 1
-        return text.replace(get_plotlyjs(), "")
+        assert text.count(scripts()) == 1
+        return text.replace(scripts(), "")
 
     return write
 
 
-def figure(text):
-    return json.loads(re.search(r"^const shell = (.*);$", text, re.MULTILINE)[1])
+def scene(text):
+    return json.loads(re.search(r'id="scene">(.*?)</script>', text, re.DOTALL)[1])
 
 
-def trace(text, name):
-    return next(trace for trace in figure(text)["data"] if trace["name"] == name)
+def layer(text, name):
+    return next(layer for layer in scene(text)["layers"] if layer["id"] == name)
 
 
-def array(trace, names):
-    columns = [np.frombuffer(base64.b64decode(trace[n]["bdata"]), trace[n]["dtype"]) for n in names]
-    return np.stack(columns, axis=1).astype(float)
+def numbers(packed, width=None):
+    """An array as the page unpacks it; so many columns."""
+    kind = {"f4": "<f4", "u1": "u1", "u4": "<u4"}[packed["kind"]]
+    found = np.frombuffer(base64.b64decode(packed["bytes"]), kind)
+    found = found.astype(float if kind == "<f4" else int)
+    return found if width is None else found.reshape(-1, width)
+
+
+def strip_points(strips):
+    """Points of strips, as the page lays them: along each column's own direction."""
+    frames = numbers(strips["frames"], 9)[numbers(strips["columns"])]
+    return frames[:, :3] + numbers(strips["heights"])[:, None] * frames[:, 6:]
 
 
 def edges_of(text, name):
-    """Points of the edges, as the page looks them up in the mesh; NaN between two strips."""
-    points, loops = array(trace(text, name), "xyz"), trace(text, f"{name}, edges")["meta"]["loops"]
-    numbers = np.frombuffer(base64.b64decode(loops["bdata"]), loops["dtype"])
-    return np.vstack([points, np.full((1, 3), np.nan)])[numbers]
+    """Points of the edges; NaN between two strips."""
+    strips = layer(text, name)
+    return np.vstack([strip_points(strips), np.full((1, 3), np.nan)])[numbers(strips["loops"])]
 
 
 def visible(text):
@@ -134,9 +144,10 @@ def visible(text):
 
 def test_nothing_is_fetched(page):
     text = page()
-    markup = re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)
+    markup = re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)
     assert not re.findall(r"\b(?:src|href|srcset|action)\s*=|@import|url\(|<link|<iframe", markup)
-    assert not re.findall(r"https?:|//\w+\.|fetch\(|XMLHttpRequest|import\(", text)
+    own = text.replace("http://www.w3.org/2000/svg", "")  # a name, not an address
+    assert not re.findall(r"https?:|//\w+\.|fetch\(|XMLHttpRequest", own)
 
 
 def test_the_policy_forbids_requests(page):
@@ -163,10 +174,10 @@ def test_hostile_texts_stay_texts(page, catenoid):
         "timing": {HOSTILE: 1.0},
     }
     text, tame = page(report, HOSTILE, (jointed, parts)), page()
-    assert text.count("<script") == tame.count("<script") == 2
-    assert text.count("</script") == tame.count("</script") == 2
+    assert text.count("<script") == tame.count("<script") == 4
+    assert text.count("</script") == tame.count("</script") == 4
     assert "<h1>&lt;/script&gt;" in text
-    assert trace(text, "Marks")["text"][0] == HOSTILE
+    assert layer(text, "marks")["texts"][0] == HOSTILE
 
 
 def test_the_same_design_writes_the_same_page(page):
@@ -192,8 +203,8 @@ def test_sixty_lamellas_of_thirty_slots_stay_below_two_megabytes(page):
 def test_the_strips_have_the_area_of_their_parts(page, catenoid):
     text = page()
     for family, letter in ((1, "A"), (2, "B")):
-        mesh = trace(text, f"Family {letter}")
-        corners = array(mesh, "xyz")[array(mesh, "ijk").astype(int)]
+        strips = layer(text, f"strips-{letter}")
+        corners = strip_points(strips)[numbers(strips["faces"], 3)]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         wanted = sum(
             part.area
@@ -210,59 +221,67 @@ def test_every_slot_corner_is_on_the_outline(page, catenoid):
     centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
     x, y = part.outline.T
     corners = lamella.place(x + lamella.start, 0.0 * x, y - part.width / 2.0) - centre
-    edges = edges_of(page(), "Family A")
+    edges = edges_of(page(), "strips-A")
     apart = np.linalg.norm(corners[:, None] / 1e3 - edges[None], axis=2)
     assert np.nanmin(apart, axis=1).max() < 2e-4
 
 
 def test_one_outline_per_lamella(page):
-    edges = edges_of(page(), "Family B")
+    edges = edges_of(page(), "strips-B")
     assert np.isnan(edges).all(axis=1).sum() == 12
 
 
-def test_hovering_tells_mark_family_length_and_slots(page, catenoid):
-    mesh, part = trace(page(), "Family B"), catenoid[1][12]
-    assert part.mark == "B1"
+def test_a_strip_tells_mark_family_length_and_slots(page, catenoid):
+    strips, part = layer(page(), "strips-B"), catenoid[1][12]
+    first = strips["parts"][0]
+    assert first["mark"] == part.mark == "B1"
     length = f"{part.length:,.1f}".replace(",", "\u202f")
-    told = f"<b>B1</b>, family B<br>length {length} mm<br>{len(part.slots)} slots<br>"
-    assert re.fullmatch(re.escape(told) + r"\d+ % used at N\d+-N\d+", mesh["meta"]["texts"][0])
-    assert sum(mesh["meta"]["counts"]) == len(array(mesh, "x"))
+    told = ["family B", f"length {length} mm", f"{len(part.slots)} slots"]
+    assert first["lines"][:3] == told
+    assert re.fullmatch(r"\d+ % used at N\d+-N\d+", first["lines"][3])
+    assert sum(strips["sizes"]) == len(numbers(strips["faces"], 3))
+    assert sum(strips["counts"]) == len(numbers(strips["x"]))
 
 
 def test_nodes_tell_name_angle_and_marks(page, catenoid):
     design = catenoid[0].design
-    nodes, first = trace(page(), "Nodes"), design.nodes[0]
+    nodes, first = layer(page(), "nodes"), design.nodes[0]
     marks = " × ".join(design.lamellas[c.lamella].mark for c in first.crossings)
-    assert nodes["text"][0] == f"<b>N1</b><br>{np.degrees(first.angle):.2f}°<br>{marks}"
-    assert len(nodes["text"]) == len(design.nodes)
+    told = [f"{np.degrees(first.angle):.2f}°", marks]
+    assert nodes["parts"][0] == {"mark": "N1", "lines": told}
+    assert len(nodes["parts"]) == len(numbers(nodes["points"], 3)) == len(design.nodes)
+
+
+def test_the_columns_of_a_strip_lie_as_far_apart_as_on_the_flat_part(page):
+    """What the page bends from flat to built keeps its length."""
+    strips = layer(page(), "strips-A")
+    places, x = numbers(strips["frames"], 9)[:, :3], numbers(strips["x"])
+    first = 0
+    for count in strips["counts"]:
+        own = slice(first, first + count)
+        chords = np.linalg.norm(np.diff(places[own], axis=0), axis=1)
+        assert chords.sum() == pytest.approx(x[own][-1] - x[own][0], rel=2e-3)
+        first += count
+
+
+def test_every_strip_has_its_flat_pattern(page, catenoid):
+    deflated = base64.b64decode(re.search(r'id="patterns">(.*?)</script>', page(), re.DOTALL)[1])
+    patterns = json.loads(zlib.decompress(deflated))
+    assert list(patterns) == [part.mark for part in catenoid[1]]
+    for part in catenoid[1]:
+        drawn = ElementTree.fromstring(patterns[part.mark])
+        texts = [node.text for node in drawn.iter("{http://www.w3.org/2000/svg}text")]
+        assert f"{part.length:,.1f}".replace(",", "\u202f") in texts
+        assert {slot.partner for slot in part.slots} <= set(texts)
 
 
 def test_every_mark_is_in_the_view_and_in_the_cut_list(page, catenoid):
     text = page()
     marks = [lamella.mark for lamella in catenoid[0].design.lamellas]
-    assert trace(text, "Marks")["text"] == marks
+    assert layer(text, "marks")["texts"] == marks
     for table in ("cut-list", "stress"):
         rows = text[text.index(f'id="{table}"') :]
         assert re.findall(r"</span>([AB]\d+)</td>", rows[: rows.index("</table>")]) == marks
-
-
-def test_the_camera_sees_everything_and_fills_the_frame(page):
-    text = page()
-    data = [array(trace(text, name), "xyz") for name in ("Family A", "Family B", "Marks")]
-    points = np.concatenate(data)
-    low, high = points.min(axis=0), points.max(axis=0)
-    points = (points - (low + high) / 2.0) / np.cbrt(np.prod(high - low))
-    camera = figure(text)["layout"]["scene"]["camera"]
-    eye, centre = (np.array([camera[key][c] for c in "xyz"]) for key in ("eye", "center"))
-    back = (eye - centre) / np.linalg.norm(eye - centre)
-    right = np.cross([0.0, 0.0, 1.0], back)
-    right /= np.linalg.norm(right)
-    sight = points - eye
-    depth = -(sight @ back) * np.tan(np.pi / 8.0)
-    across = np.abs(sight @ right / depth).max() / 1.5
-    upwards = np.abs(sight @ np.cross(back, right) / depth).max()
-    assert depth.min() > 0.0
-    assert 0.85 < max(across, upwards) <= 1.0
 
 
 def test_a_shell_far_from_the_origin_keeps_its_shape(page, catenoid):
@@ -274,7 +293,8 @@ def test_a_shell_far_from_the_origin_keeps_its_shape(page, catenoid):
         return jointed, parts_of(jointed)
 
     here, there = (
-        array(trace(page(design=moved(by)), "Nodes"), "xyz") for by in (0.0, [5e8, 5e9, 0.0])
+        numbers(layer(page(design=moved(by)), "nodes")["points"], 3)
+        for by in (0.0, [5e8, 5e9, 0.0])
     )
     np.testing.assert_allclose(here, there, atol=2e-4)
 
@@ -379,7 +399,7 @@ def test_clearance_raw_sheet_and_sheet_of_every_part_are_told(tmp_path, catenoid
     path = tmp_path / "report.html"
     more = {"sheets": sheets, "clearance": 0.25}
     write_report(path, name="x", report=REPORT, jointed=jointed, parts=parts, **more)
-    text = path.read_text(encoding="utf-8").replace(get_plotlyjs(), "")
+    text = path.read_text(encoding="utf-8").replace(scripts(), "")
     words = visible(text)
     assert "Slots with 0.25 mm clearance." in words
     assert f"Cut from {len(sheets)} raw sheets of 6000 × 700 mm." in words
@@ -436,9 +456,9 @@ def double():
 def test_both_strips_of_a_double_lamella_are_drawn_and_listed(page, double):
     text, (jointed, parts) = page(design=double), double
     assert "8 lamellas, 16 nodes. 16 strips along the lamellas." in visible(text)
-    assert len(trace(text, "Family A")["meta"]["texts"]) == 8
-    assert trace(text, "Marks")["text"] == [one.mark for one in jointed.design.lamellas]
-    assert len(trace(text, "Nodes")["text"]) == len(jointed.design.nodes)
+    assert len(layer(text, "strips-A")["parts"]) == 8
+    assert layer(text, "marks")["texts"] == [one.mark for one in jointed.design.lamellas]
+    assert len(layer(text, "nodes")["parts"]) == len(jointed.design.nodes)
     listed = text[text.index('id="cut-list"') :]
     assert re.findall(r"</span>([AB]\d[LR])</td>", listed) == [part.mark for part in parts]
 
@@ -449,14 +469,13 @@ def test_connectors_lie_where_they_are_and_weigh_what_they_do(page, double):
     positions = np.array([node.position for node in jointed.design.nodes])
     centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
     for prisms in jointed.connectors:
-        meta = trace(text, prisms.name.capitalize())["meta"]
-        assert meta["marks"] == [body.mark for body in prisms.bodies]
-        frames = np.array(meta["frames"]).reshape(-1, 3, 3)
+        found = layer(text, f"connectors-{prisms.name}")
+        assert [part["mark"] for part in found["parts"]] == [body.mark for body in prisms.bodies]
+        frames, shape_of = numbers(found["frames"]).reshape(-1, 3, 3), numbers(found["bodies"])
         volume = 0.0
-        for body, number, (origin, x, y) in zip(prisms.bodies, meta["bodies"], frames, strict=True):
-            shape = meta["shapes"][number]
-            points = np.array(shape["points"]).reshape(-1, 3)
-            faces = np.array(shape["faces"]).reshape(-1, 3)
+        for body, number, (origin, x, y) in zip(prisms.bodies, shape_of, frames, strict=True):
+            shape = found["shapes"][number]
+            points, faces = numbers(shape["points"], 3), numbers(shape["faces"], 3)
             placed = origin + points @ np.array([x, y, np.cross(x, y)])
             middle = body.frame.place(prisms.shapes[body.shape].outline[:, :2]).mean(axis=0)
             assert np.linalg.norm((middle - centre) / 1e3 - placed.mean(axis=0)) < 0.08
@@ -481,32 +500,30 @@ def test_sixty_double_lamellas_with_all_their_bolts_stay_below_eight_megabytes(p
     design = doubled(gs.Enneper(4000.0), gs.AsymptoticPatch((-1, 1), (-1, 1), (30, 30)))
     text = page(design=design)
     assert sum(len(prisms.bodies) for prisms in design[0].connectors) > 900
-    assert len(text.encode()) + len(get_plotlyjs().encode()) < 8e6
-    assert trace(text, "Bolts")["visible"] == "legendonly"
+    assert len(text.encode()) + len(scripts().encode()) < 8e6
+    assert not layer(text, "connectors-bolts")["visible"]
 
 
 # ---- colours and stress ---------------------------------------------------------------------
 
 
-def shades(text):
-    return json.loads(re.search(r"^const \{ scale, shades \} = (.*);$", text, re.MULTILINE)[1])
-
-
 def test_every_triangle_has_the_colour_of_its_bay(page, catenoid):
     text, (jointed, parts) = page(), catenoid
     stress = bay_stress(jointed.strips, parts)
-    for shade in shades(text)["shades"]:
-        assert len(shade["values"]) == len(stress)
-        assert 0.0 <= min(shade["values"]) <= max(shade["values"]) <= 1.0
-    used = next(s for s in shades(text)["shades"] if s["name"] == "Utilisation")
-    np.testing.assert_allclose(used["values"], np.minimum(stress.utilisation, 1.0), atol=6e-4)
-    for name, family in (("Family A", 1), ("Family B", 2)):
-        mesh = trace(text, name)
-        faces = array(mesh, "ijk").astype(int)
-        meta = mesh["meta"]
-        bays = np.repeat(meta["bays"], meta["triangles"])
+    for colouring in scene(text)["maps"]:
+        values = numbers(colouring["values"])
+        assert colouring["on"] == "bays"
+        assert len(values) == len(stress)
+        assert 0.0 <= values.min() <= values.max() <= 1.0
+    used = next(m for m in scene(text)["maps"] if m["name"] == "Utilisation")
+    wanted = np.minimum(stress.utilisation, 1.0)
+    np.testing.assert_allclose(numbers(used["values"]), wanted, atol=1e-6)
+    for name, family in (("strips-A", 1), ("strips-B", 2)):
+        strips = layer(text, name)
+        faces = numbers(strips["faces"], 3)
+        bays = np.repeat(strips["cells"]["numbers"], strips["cells"]["lengths"])
         assert len(bays) == len(faces)
-        middles = array(mesh, "xyz")[faces].mean(axis=1)
+        middles = strip_points(strips)[faces].mean(axis=1)
         lamellas = jointed.strips.lamellas
         assert {lamellas[i].family for i in stress.strip[bays]} == {family}
         positions = np.array([node.position for node in jointed.design.nodes])
@@ -554,8 +571,8 @@ def test_a_strip_with_rounded_floors_holes_and_bevels_is_drawn_with_them(page, c
 def test_a_round_floor_is_drawn_as_large_as_it_is(page, catenoid):
     jointed = catenoid[0]
     parts = parts_of(jointed, Relief(Floor.ROUND))
-    mesh = trace(page(design=(jointed, parts)), "Family A")
-    corners = array(mesh, "xyz")[array(mesh, "ijk").astype(int)]
+    strips = layer(page(design=(jointed, parts)), "strips-A")
+    corners = strip_points(strips)[numbers(strips["faces"], 3)]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     wanted = sum(p.area for p in parts if p.mark.startswith("A"))
     assert np.linalg.norm(normals, axis=1).sum() / 2.0 == pytest.approx(wanted / 1e6, rel=2e-3)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import fabrication as fab
-from fabrication.export.connector_view import connector_traces
+from fabrication.export.scene.bodies import connector_layers
 from fabrication.joints.double_slot import StarWasher
 from fabrication.outlines import Frame
 from fabrication.shapes import Body, Prisms, Shape
@@ -23,18 +23,19 @@ def bodies(count):
 
 
 def test_every_shape_is_told_once_and_every_body_by_nine_numbers():
-    (trace,) = connector_traces([bodies(20)], np.zeros(3))
-    assert (trace.name, trace.visible) == ("Star washers", True)
-    assert len(trace.meta["shapes"]) == 1
-    assert np.array(trace.meta["frames"]).shape == (180,)
-    assert trace.meta["frames"][9:12] == pytest.approx([0.1, 0.0, 0.0])
+    (layer,) = connector_layers([bodies(20)], np.zeros(3))
+    assert (layer.name, layer.visible) == ("Star washers", True)
+    assert len(layer.shapes) == 1
+    assert layer.frames.shape == (20, 9)
+    assert layer.frames[1, :3] == pytest.approx([0.1, 0.0, 0.0])
+    assert [part.mark for part in layer.parts] == [f"N{k}" for k in range(20)]
 
 
 def test_many_connectors_wait_to_be_asked_for():
-    (trace,) = connector_traces([bodies(2000)], np.zeros(3))
-    assert trace.visible == "legendonly"
+    (layer,) = connector_layers([bodies(2000)], np.zeros(3))
+    assert not layer.visible
 
 
 def test_a_kind_without_bodies_is_left_out():
     empty = Prisms("bolts", (0.5, 0.5, 0.5), (), ())
-    assert connector_traces([empty], np.zeros(3)) == []
+    assert connector_layers([empty], np.zeros(3)) == []

@@ -1,0 +1,472 @@
+// The 3D view of reports and of the studio: layers to switch, colours with a legend, a strip's own
+// numbers under the pointer and its flat pattern beside, and strips that bend from flat to built.
+// three.js is handed in; nothing here asks the network for anything.
+
+import { made, ramp, unpacked } from "./layers.js";
+
+const FIELD = 40, ACCENT = "#c2185b", FAINT = 0.12;
+const VIEWS = { Home: null, Top: [0, -1e-3, 1], Front: [0, -1, 0], Side: [1, 0, 0] };
+
+function tag(name, className, text) {
+  const node = document.createElement(name);
+  node.className = className;
+  if (text !== undefined) node.textContent = text;
+  return node;
+}
+
+function button(text, click) {
+  const node = tag("button", "gv-button", text);
+  node.type = "button";
+  node.addEventListener("click", click);
+  return node;
+}
+
+// Whether pictures are made by the processor: it smooths edges only while nothing moves.
+function software() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const known = gl && gl.getExtension("WEBGL_debug_renderer_info");
+  const name = known ? gl.getParameter(known.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+// library: {THREE, OrbitControls}. pattern(mark): a promise of the SVG of a flat part, or null.
+export function viewer({ THREE, OrbitControls }, root, { pattern = async () => null, chosen = () => {} } = {}) {
+  root.classList.add("gv");
+  root.replaceChildren();
+  const bar = tag("div", "gv-bar"), stage = tag("div", "gv-stage"), side = tag("aside", "gv-side"), foot = tag("div", "gv-foot");
+  const body = tag("div", "gv-body");
+  body.append(stage, side);
+  root.append(bar, body, foot);
+  side.hidden = true;
+  const tip = tag("div", "gv-tip"), list = tag("div", "gv-layers"), ink = tag("canvas", "gv-ink");
+  tip.hidden = true;
+
+  let renderer;
+  const slow = software(), ratio = Math.min(devicePixelRatio, 2);
+  try {
+    renderer = new THREE.WebGLRenderer({ antialias: !slow });
+  } catch {
+    stage.append(tag("p", "gv-none", "This browser shows no WebGL, which the 3D view needs; all else on the page works without."));
+    return { show() {}, replace() {}, ready: false };
+  }
+  renderer.setPixelRatio(ratio);
+  renderer.setClearColor("#ffffff");
+  stage.append(renderer.domElement, ink, list, tip);
+  renderer.domElement.tabIndex = 0;
+  renderer.domElement.setAttribute("aria-label", "The shell in 3D");
+
+  const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(FIELD, 1.5, 0.01, 1000);
+  camera.up.set(0, 0, 1);
+  const sun = new THREE.DirectionalLight("#ffffff", 1.5);
+  camera.add(sun);
+  world.add(camera, new THREE.AmbientLight("#ffffff", 1.9));
+  const controls = new OrbitControls(camera, renderer.domElement);
+  controls.zoomToCursor = true;
+  controls.addEventListener("change", draw);
+  const mark = new THREE.MeshBasicMaterial({ color: ACCENT, side: THREE.DoubleSide });
+  const picker = new THREE.Raycaster();
+
+  const state = { layers: new Map(), maps: [], scale: [], table: null, map: null, bend: 1, picked: null, under: null, home: [0.62, -0.64, 0.46], frames: 0, rows: [] };
+  let waiting = false, dragging = false;
+
+  // ---- drawing ------------------------------------------------------------------------------
+
+  function draw() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => { waiting = false; render(); });
+  }
+
+  let rest = 0;
+  function render() {
+    if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
+    renderer.render(world, camera);
+    write();
+    state.frames += 1;
+    clearTimeout(rest);
+    if (slow) rest = setTimeout(smooth, 350);
+  }
+
+  // The same picture with four samples a pixel.
+  function smooth() {
+    renderer.setPixelRatio(2 * ratio);
+    renderer.render(world, camera);
+  }
+
+  function write() {
+    const pen = ink.getContext("2d"), { width, height } = ink;
+    pen.clearRect(0, 0, width, height);
+    pen.font = `${11 * ratio}px system-ui, sans-serif`;
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    const at = new THREE.Vector3();
+    for (const { layer, shown, made: own } of state.layers.values()) {
+      if (layer.kind !== "labels" || !shown || (layer.built && state.bend < 1)) continue;
+      layer.texts.forEach((text, n) => {
+        at.fromArray(own.points, 3 * n).project(camera);
+        if (at.z > 1) return;
+        pen.fillStyle = layer.colours[n % layer.colours.length];
+        pen.fillText(text, (0.5 + at.x / 2) * width, (0.5 - at.y / 2) * height);
+      });
+    }
+  }
+
+  function resized() {
+    const { clientWidth: width, clientHeight: height } = stage;
+    if (!width || !height) return;
+    renderer.setSize(width, height);
+    [ink.width, ink.height] = [width, height].map((size) => size * ratio);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    draw();
+  }
+  new ResizeObserver(resized).observe(stage);
+
+  // ---- camera -------------------------------------------------------------------------------
+
+  function everything() {
+    const all = [];
+    for (const { layer, made: own, shown } of state.layers.values()) if (shown && layer.kind !== "labels") all.push(own.points);
+    if (!all.length) for (const { made: own } of state.layers.values()) all.push(own.points);
+    return all.filter((points) => points.length);
+  }
+
+  function frame(direction = state.home) {
+    const back = new THREE.Vector3(...direction).normalize();
+    const right = new THREE.Vector3().crossVectors(camera.up, back).normalize(), up = new THREE.Vector3().crossVectors(back, right);
+    const sets = everything(), axes = [right, up, back].map((axis) => axis.toArray());
+    if (!sets.length) return;
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const each = (use) => sets.forEach((p) => { for (let n = 0; n < p.length; n += 3) use(axes.map(([x, y, z]) => x * p[n] + y * p[n + 1] + z * p[n + 2])); });
+    each((q) => q.forEach((v, c) => { low[c] = Math.min(low[c], v); high[c] = Math.max(high[c], v); }));
+    const middle = low.map((v, c) => (v + high[c]) / 2), reach = Math.tan((FIELD * Math.PI) / 360);
+    let away = 0;
+    for (let turn = 0; turn < 4; turn += 1) {
+      away = 1e-3;
+      each((q) => {
+        away = Math.max(away, Math.abs(q[0] - middle[0]) / (reach * camera.aspect) + q[2] - middle[2], Math.abs(q[1] - middle[1]) / reach + q[2] - middle[2]);
+      });
+      const box = [1, 1, -1, -1].map((sign) => -sign * Infinity);
+      each((q) => [0, 1].forEach((c) => {
+        const seen = (q[c] - middle[c]) / (away - (q[2] - middle[2]) || 1e-9);
+        box[c] = Math.max(box[c], seen); box[c + 2] = Math.min(box[c + 2], seen);
+      }));
+      [0, 1].forEach((c) => { middle[c] += ((box[c] + box[c + 2]) / 2) * away; });
+    }
+    const centre = new THREE.Vector3();
+    [right, up, back].forEach((axis, c) => centre.addScaledVector(axis, middle[c]));
+    controls.target.copy(centre);
+    camera.position.copy(centre).addScaledVector(back, 1.06 * away);
+    const size = Math.max(...low.map((v, c) => high[c] - v), 1e-3);
+    [camera.near, camera.far] = [size / 500, 40 * size];
+    camera.updateProjectionMatrix();
+    controls.update();
+    draw();
+  }
+
+  // ---- layers -------------------------------------------------------------------------------
+
+  function show(scene, { keep = false } = {}) {
+    const before = new Map([...state.layers].map(([id, { shown }]) => [id, shown]));
+    for (const id of [...state.layers.keys()]) remove(id);
+    Object.assign(state, { maps: read(scene.maps || []), scale: scene.scale, table: ramp(scene.scale), home: scene.view || state.home });
+    for (const layer of scene.layers) add(layer, keep && before.has(layer.id) ? before.get(layer.id) : layer.visible);
+    settle();
+    if (!keep) frame();
+  }
+
+  const read = (maps) => maps.map((map) => ({ ...map, values: unpacked(map.values) }));
+
+  // New contents of some layers; everything else, and where one looks from, stays.
+  function replace({ layers = [], maps = null, gone = [] }) {
+    for (const id of gone) remove(id);
+    for (const layer of layers) {
+      const before = state.layers.get(layer.id), first = state.layers.size === 0;
+      remove(layer.id);
+      add(layer, before ? before.shown : layer.visible);
+      if (first) frame();
+    }
+    if (maps) state.maps = read(maps);
+    settle();
+  }
+
+  function settle() {
+    pick(null);
+    const shown = state.maps.find(({ name }) => name === state.map);
+    state.map = shown ? state.map : null;
+    laid();
+    bend(state.bend);
+    listed();
+    barred();
+    shade();
+    draw();
+  }
+
+  function add(layer, shown) {
+    const own = made(THREE, layer);
+    state.layers.set(layer.id, { layer, made: own, shown });
+    for (const object of own.objects) world.add(object);
+  }
+
+  function remove(id) {
+    const entry = state.layers.get(id);
+    if (!entry) return;
+    for (const object of entry.made.objects) { world.remove(object); object.geometry.dispose(); if (object.dispose) object.dispose(); }
+    for (const material of entry.made.materials) material.dispose();
+    state.layers.delete(id);
+  }
+
+  function seen() {
+    for (const { layer, made: own, shown } of state.layers.values()) {
+      const visible = shown && !(layer.built && state.bend < 1);
+      for (const object of own.objects) object.visible = visible;
+    }
+    draw();
+  }
+
+  function listed() {
+    const groups = new Map();
+    for (const entry of state.layers.values()) groups.set(entry.layer.name, [...(groups.get(entry.layer.name) || []), entry]);
+    list.replaceChildren(...[...groups].map(([name, entries]) => {
+      const line = tag("label", "gv-layer"), box = tag("input", "");
+      box.type = "checkbox";
+      box.checked = entries.some(({ shown }) => shown);
+      box.addEventListener("change", () => { for (const entry of entries) entry.shown = box.checked; shade(); seen(); });
+      const swatch = tag("i", "gv-swatch");
+      swatch.style.background = entries[0].layer.swatch || entries[0].layer.colour || "none";
+      line.append(box, swatch, tag("span", "", name));
+      return line;
+    }));
+    seen();
+  }
+
+  // ---- colours ------------------------------------------------------------------------------
+
+  function barred() {
+    const maps = tag("div", "gv-maps");
+    maps.setAttribute("role", "group");
+    maps.setAttribute("aria-label", "Colours");
+    for (const name of [null, ...state.maps.map((map) => map.name)]) {
+      const node = button(name || "Plain", () => { state.map = name; reveal(); shade(); barred(); });
+      node.setAttribute("aria-pressed", name === state.map);
+      maps.append(node);
+    }
+    const views = tag("div", "gv-views");
+    for (const [name, direction] of Object.entries(VIEWS)) views.append(button(name, () => frame(direction || state.home)));
+    bar.replaceChildren(...(state.maps.length ? [maps] : []), views);
+    footed();
+  }
+
+  const current = () => state.maps.find(({ name }) => name === state.map);
+
+  // Something that carries the chosen colours has to be on the screen.
+  function reveal() {
+    const map = current(), carrying = [...state.layers.values()].filter(({ layer }) => map && layer.cells_of === map.on);
+    if (carrying.length && !carrying.some(({ shown }) => shown)) for (const entry of carrying) entry.shown = true;
+    listed();
+  }
+
+  function shade() {
+    const map = current();
+    for (const { layer, made: own } of state.layers.values()) {
+      if (!own.shade) continue;
+      own.shade(map && layer.cells_of === map.on ? map.values : null, state.table);
+      if (own.rim) own.rim.color.set(map ? "#5a6472" : layer.edge || "#5a6472");
+    }
+    draw();
+  }
+
+  function footed() {
+    const map = current(), parts = [];
+    if (map) {
+      const scale = tag("div", "gv-scale"), strip = tag("i", "");
+      strip.style.background = `linear-gradient(to right, ${state.scale.map(([place, colour]) => `${colour} ${100 * place}%`).join(", ")})`;
+      scale.append(tag("span", "gv-low", map.low), strip, tag("span", "gv-high", map.high));
+      parts.push(scale);
+    }
+    const kinds = [...state.layers.values()].map(({ layer }) => layer.kind);
+    if (kinds.includes("strips")) parts.push(slider("Flat to built", 0, 100, Math.round(100 * state.bend), (value) => bend(value / 100), "gv-bend"));
+    const moving = [...state.layers.values()].find(({ layer }) => layer.kind === "positions");
+    if (moving) parts.push(slider("Opening", 0, moving.layer.frames.length - 1, moving.made.number, open, "gv-open"));
+    foot.replaceChildren(...parts);
+  }
+
+  function slider(text, low, high, value, use, name) {
+    const line = tag("label", `gv-slider ${name}`), box = tag("input", "");
+    Object.assign(box, { type: "range", min: low, max: high, value });
+    box.addEventListener("input", () => use(Number(box.value)));
+    line.append(tag("span", "", text), box);
+    return line;
+  }
+
+  // ---- motion -------------------------------------------------------------------------------
+
+  // Rows on the ground for all strips, one beside the other.
+  function laid() {
+    const strips = [...state.layers.values()].filter(({ layer }) => layer.kind === "strips");
+    let low = Infinity, count = 0;
+    const middle = [Infinity, -Infinity, Infinity, -Infinity];
+    for (const { made: own, layer } of strips) {
+      count += layer.counts.length;
+      for (let n = 0; n < own.points.length; n += 3) {
+        const [x, y, z] = own.points.subarray(n, n + 3);
+        low = Math.min(low, z);
+        middle[0] = Math.min(middle[0], x); middle[1] = Math.max(middle[1], x);
+        middle[2] = Math.min(middle[2], y); middle[3] = Math.max(middle[3], y);
+      }
+    }
+    let number = 0;
+    for (const { made: own, layer } of strips) {
+      own.rows = layer.counts.map(() => {
+        const across = (number - (count - 1) / 2) * 1.3 * layer.width;
+        number += 1;
+        return { turn: new THREE.Quaternion(), place: new THREE.Vector3((middle[0] + middle[1]) / 2, (middle[2] + middle[3]) / 2 + across, low) };
+      });
+    }
+  }
+
+  function bend(share) {
+    const moved = share !== state.bend || share < 1;
+    state.bend = share;
+    if (!moved) return;
+    state.under = null;
+    lit("under", null);
+    for (const { layer, made: own } of state.layers.values()) if (layer.kind === "strips") own.bend(share, own.rows);
+    if (state.picked) lit("picked", state.picked);
+    seen();
+  }
+
+  function open(number) {
+    for (const { layer, made: own } of state.layers.values()) if (layer.kind === "positions") own.open(number);
+    draw();
+  }
+
+  // ---- parts --------------------------------------------------------------------------------
+
+  function hit(event) {
+    const box = renderer.domElement.getBoundingClientRect();
+    const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+    picker.setFromCamera(at, camera);
+    const size = camera.position.distanceTo(controls.target), pixel = (2 * size * Math.tan((FIELD * Math.PI) / 360)) / box.height;
+    picker.params.Points.threshold = 5 * pixel;
+    let best = null;
+    for (const { layer, made: own } of state.layers.values()) {
+      for (const object of own.pickable.filter(({ visible }) => visible)) {
+        for (const found of picker.intersectObject(object, false)) {
+          const part = own.part(found), near = found.distance - (layer.kind === "dots" ? 12 * pixel : 0);
+          if (own.parts[part] && (!best || near < best.near)) best = { near, id: layer.id, part, name: own.parts[part].mark };
+        }
+      }
+    }
+    return best;
+  }
+
+  const about = (found) => state.layers.get(found.id).made.parts[found.part];
+
+  function written(node, { mark: name, lines }) {
+    node.replaceChildren(tag("strong", "", name), ...lines.map((line) => tag("div", "", line)));
+  }
+
+  function point(event) {
+    if (dragging) return;
+    const found = hit(event);
+    if (found?.id !== state.under?.id || found?.part !== state.under?.part) {
+      state.under = found;
+      lit("under", found && !(state.picked && state.picked.id === found.id && state.picked.part === found.part) ? found : null);
+    }
+    tip.hidden = !found;
+    renderer.domElement.style.cursor = found ? "pointer" : "grab";
+    if (!found) return;
+    written(tip, about(found));
+    const box = stage.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+    tip.style.left = `${Math.min(x + 14, box.width - tip.offsetWidth - 4)}px`;
+    tip.style.top = `${Math.max(4, Math.min(y + 14, box.height - tip.offsetHeight - 4))}px`;
+  }
+
+  const marks = {};
+  function lit(use, found) {
+    if (marks[use]) { world.remove(marks[use]); marks[use].userData.own?.dispose(); delete marks[use]; }
+    if (found) {
+      const object = state.layers.get(found.id).made.alone(found.part, mark);
+      object.renderOrder = 2;
+      marks[use] = object;
+      world.add(object);
+    }
+    draw();
+  }
+
+  async function pick(found) {
+    const same = found && state.picked && found.id === state.picked.id && found.part === state.picked.part;
+    state.picked = found;
+    lit("picked", found);
+    for (const { layer, made: own } of state.layers.values()) {
+      for (const material of own.materials) {
+        const opacity = found ? FAINT : layer.opacity ?? 1;
+        Object.assign(material, { transparent: opacity < 1, opacity, depthWrite: !found && opacity === 1, needsUpdate: true });
+      }
+    }
+    if (!found) {
+      const open = !side.hidden;
+      side.hidden = true;
+      chosen(null);
+      if (open) resized();
+      return draw();
+    }
+    if (same) return draw();
+    const words = about(found), head = tag("div", "gv-about"), drawing = tag("div", "gv-pattern");
+    written(head, words);
+    side.replaceChildren(button("Show all", () => pick(null)), head, drawing);
+    if (side.hidden) { side.hidden = false; resized(); }
+    chosen(words.mark);
+    draw();
+    const svg = await pattern(words.mark);
+    if (svg && state.picked === found) {
+      drawing.append(document.importNode(new DOMParser().parseFromString(svg, "image/svg+xml").documentElement, true));
+    }
+  }
+
+  let pressed = null;
+  const surface = renderer.domElement;
+  surface.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; dragging = true; tip.hidden = true; });
+  addEventListener("pointerup", (event) => {
+    dragging = false;
+    if (!pressed || event.target !== surface) { pressed = null; return; }
+    const still = Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4;
+    pressed = null;
+    if (still) { state.under = null; lit("under", null); pick(hit(event)); }
+  });
+  let asked = null;
+  surface.addEventListener("pointermove", (event) => {
+    if (asked === null) requestAnimationFrame(() => { const last = asked; asked = null; point(last); });
+    asked = event;
+  });
+  surface.addEventListener("pointerleave", () => { tip.hidden = true; lit("under", null); state.under = null; });
+  addEventListener("keydown", (event) => { if (event.key === "Escape" && state.picked) pick(null); });
+
+  function find(name) {
+    for (const { layer, made: own } of state.layers.values()) {
+      const part = own.parts.findIndex(({ mark: known }) => known === name);
+      if (part >= 0) return { id: layer.id, part, name };
+    }
+    return null;
+  }
+
+  resized();
+  return {
+    ready: true, camera, show, replace, frame, bend, open, state,
+    select: (name) => pick(name === null ? null : find(name)),
+    colour: (name) => { state.map = name; reveal(); shade(); barred(); },
+    picture: () => { if (slow) smooth(); else render(); return renderer.domElement.toDataURL("image/png"); },
+    where: (name) => {  // of a part, where it is on the screen, px: what tests point at
+      const found = find(name), own = found && state.layers.get(found.id).made;
+      if (!own) return null;
+      const object = own.alone(found.part, mark), at = new THREE.Vector3(), box = surface.getBoundingClientRect();
+      const points = object.geometry.getAttribute("position"), n = Math.floor(points.count / 2);
+      at.fromBufferAttribute(points, n);
+      if (!object.matrixAutoUpdate) at.applyMatrix4(object.matrix);
+      at.project(camera);
+      return [box.left + (0.5 + at.x / 2) * box.width, box.top + (0.5 - at.y / 2) * box.height];
+    },
+  };
+}
