@@ -209,6 +209,9 @@ from .quality import (
 from .quality import (
     node_angles as node_angles,
 )
+from .quality import (
+    surface_distance as surface_distance,
+)
 from .recipes import (
     NetRecipe as NetRecipe,
 )

@@ -103,7 +103,7 @@ def net_quality(
         edge_ratio=_net_edges(control, planarity),
         corner_angle_deg=_range(np.degrees(corner_angles(vertices, quads))),
         collapsed=int(np.count_nonzero(collapsed(vertices, quads, control.mesh.mean_edge))),
-        surface_distance_mm=None if reference is None else _distance(control, reference),
+        surface_distance_mm=None if reference is None else surface_distance(control, reference),
         curvature_ratio=curvature_ratio(control),
     )
 
@@ -205,7 +205,8 @@ def curvature_ratio(control: ControlMesh) -> float | None:
     return float(np.median(small[:, 0] / np.where(small[:, 1] == 0.0, np.inf, small[:, 1])))
 
 
-def _distance(control: ControlMesh, reference: Surface) -> Spread:
+def surface_distance(control: ControlMesh, reference: Surface) -> Spread:
+    """Distance of the vertices from *reference*, mm."""
     points = control.vertices[control.mesh.valence > 0]
     return _spread(np.linalg.norm(points - reference.closest(points).points, axis=1))
 
