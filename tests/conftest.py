@@ -19,9 +19,12 @@ SOFTWARE = (
 """WebGL without a graphics card."""
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    """The system's Chromium, headless; tests that need one are skipped where there is none."""
+    """The system's Chromium, headless; tests that need one are skipped where there is none.
+
+    Its driver keeps an event loop running, which tests of other modules must not meet.
+    """
     if CHROMIUM is None:
         pytest.skip("no Chromium is installed")
     from playwright.sync_api import sync_playwright

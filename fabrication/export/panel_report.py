@@ -11,6 +11,7 @@ import numpy as np
 import gridshell as gs
 from fabrication.colours import css
 from fabrication.errors import OutputError
+from fabrication.export.flat_drawing import piece_svg
 from fabrication.export.panel_schedule import schedule_rows
 from fabrication.export.report import middle, shared
 from fabrication.export.scene.layers import Scene, on_screen
@@ -24,6 +25,7 @@ from fabrication.export.scene.panels import (
 from fabrication.export.scene.strips import axis_layers
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import COLOURS, PanelStructure
+from fabrication.sheet_parts import panel_piece, plate_piece, star_piece
 from gridshell.arrays import Floats
 
 
@@ -58,7 +60,7 @@ def write_panel_report(
         report=report,
         pictures=pictures,
         scene=panel_scene(built),
-        patterns={},
+        patterns=panel_patterns(built),
         system=built.system,
         rows=schedule_rows(built, panel_sheets, plate_sheets, star_sheets),
         panel_groups=[
@@ -87,6 +89,14 @@ def write_panel_report(
         raise OutputError(
             "The report cannot be written", where=str(path), value=error.strerror or ""
         ) from None
+
+
+def panel_patterns(built: PanelStructure) -> dict[str, str]:
+    """The drawings of all panels, plates and star plates by their marks: SVG."""
+    pieces = [panel_piece(panel) for panel in built.panels]
+    pieces += [plate_piece(plate) for plate in built.plates]
+    pieces += [star_piece(piece) for piece in built.pieces]
+    return {piece.mark: piece_svg(piece) for piece in pieces}
 
 
 def panel_scene(

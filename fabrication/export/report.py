@@ -21,7 +21,8 @@ from markupsafe import Markup
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.errors import OutputError
-from fabrication.export.scene.bodies import connector_layers
+from fabrication.export.flat_drawing import shape_svg
+from fabrication.export.scene.bodies import connector_layers, pattern_key
 from fabrication.export.scene.layers import Layer, Scene, on_screen
 from fabrication.export.scene.motion import motion_layers
 from fabrication.export.scene.net import net_layers
@@ -153,11 +154,17 @@ def middle(points: Points) -> Floats:
 
 
 def flat_patterns(jointed: Jointed, parts: Sequence[FlatPart]) -> dict[str, str]:
-    """The drawing of every flat strip, an SVG, by its mark."""
+    """The drawings of all flat strips by their marks, and of all shapes of connectors: SVG."""
     families = [lamella.family for lamella in jointed.strips.lamellas]
-    return {
+    strips = {
         part.mark: strip_svg(part, family) for part, family in zip(parts, families, strict=True)
     }
+    shapes = {
+        pattern_key(prisms, number): shape_svg(shape)
+        for prisms in jointed.connectors
+        for number, shape in enumerate(prisms.shapes)
+    }
+    return {**strips, **shapes}
 
 
 def strip_svg(part: FlatPart, family: int) -> str:

@@ -39,7 +39,7 @@ def strip_drawing(part: FlatPart) -> dict[str, Any]:
         "part": part,
         "length": length,
         "height": height,
-        "path": _path(outline(length, height, drawn), height),
+        "path": svg_path(outline(length, height, drawn), height),
         "holes": [
             (h.x * along, height - h.y * across, max(_SMALLEST_HOLE, h.diameter * across / 2.0))
             for h in part.holes
@@ -94,8 +94,8 @@ def _bevels(part: FlatPart, along: float) -> list[float]:
     return [*([start] if start else []), *([_STRIP[0] - end] if end else [])]
 
 
-def _path(corners: Floats, height: float) -> str:
-    """An outline as an SVG path, y downwards."""
+def svg_path(corners: Floats, height: float) -> str:
+    """An outline (k, 2) or with bulges (k, 3) as an SVG path, px, y downwards from *height*."""
     rows = with_bulges(corners)
     words = [f"M{rows[0, 0]:.1f} {height - rows[0, 1]:.1f}"]
     for (x, y, bulge), (to_x, to_y, _) in zip(rows, np.roll(rows, -1, axis=0), strict=True):

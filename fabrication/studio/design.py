@@ -10,12 +10,15 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import gridshell as gs
 from fabrication.finding import Finding
+from fabrication.lamella_system import LamellaSystem
 from fabrication.net_checks import check_net
 from fabrication.package import net_of, route_of
+from fabrication.panel_route import PanelNetSystem
 from fabrication.routes import Clock, Route, System
 from fabrication.sections import Project
 from fabrication.source_sections import MeshSection, RemeshSource
@@ -139,6 +142,16 @@ def find_net(
     )
 
 
+def patterns_of(system: System) -> dict[str, str]:
+    """Drawings of all flat parts of *system*, SVG."""
+    from fabrication.export.panel_report import panel_patterns
+    from fabrication.export.report import flat_patterns
+
+    if isinstance(system, LamellaSystem):
+        return flat_patterns(system.jointed, system.parts)
+    return panel_patterns(system.built) if isinstance(system, PanelNetSystem) else {}
+
+
 @dataclass(frozen=True, eq=False)
 class Built:
     """What is built on a net, and every finding that no file is needed for."""
@@ -146,6 +159,11 @@ class Built:
     net: NetDesign
     system: System
     findings: tuple[Finding, ...]
+
+    @cached_property
+    def patterns(self) -> dict[str, str]:
+        """Drawings of flat parts, SVG, by what a part asks for."""
+        return patterns_of(self.system)
 
 
 def build(net: NetDesign, *, told: Told = lambda stage: None) -> Built:

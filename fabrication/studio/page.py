@@ -27,6 +27,12 @@ _LISTED = 200
 """Findings that are listed; the report has all."""
 
 
+class _Slider(ui.slider):
+    """A slider that follows the hand at once, not when the server has answered."""
+
+    LOOPBACK = False
+
+
 class Page:
     """One browser's page on a session.
 
@@ -122,7 +128,7 @@ class Page:
             value = ui.element("b").props(f'data-mark="{knob.key}"')
             with value:
                 text = ui.label(knob.text(knob.value))
-        slider = ui.slider(min=knob.low, max=knob.high, step=knob.step, value=knob.value)
+        slider = _Slider(min=knob.low, max=knob.high, step=knob.step, value=knob.value)
         slider.props(f'dense color=dark aria-label="{knob.label}"').props(
             f'data-mark="slider {knob.key}"'
         )

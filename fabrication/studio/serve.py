@@ -29,8 +29,6 @@ def serve(path: Path, *, port: int | None, browser: bool, told: Callable[[str], 
     from nicegui import app, ui
     from starlette.responses import Response
 
-    from fabrication.export.report import strip_svg
-    from fabrication.lamella_system import LamellaSystem
     from fabrication.studio.page import Page
     from fabrication.studio.session import Session
 
@@ -42,13 +40,10 @@ def serve(path: Path, *, port: int | None, browser: bool, told: Callable[[str], 
 
     @app.get("/flat")
     def flat(mark: str) -> Response:
-        system = None if session.built is None else session.built.system
-        if isinstance(system, LamellaSystem):
-            families = (lamella.family for lamella in system.jointed.strips.lamellas)
-            for part, family in zip(system.parts, families, strict=True):
-                if part.mark == mark:
-                    return Response(strip_svg(part, family), media_type="image/svg+xml")
-        return Response(status_code=404)
+        drawn = None if session.built is None else session.built.patterns.get(mark)
+        if drawn is None:
+            return Response(status_code=404)
+        return Response(drawn, media_type="image/svg+xml")
 
     working: list[asyncio.Task[None]] = []
 

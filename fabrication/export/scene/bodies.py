@@ -39,7 +39,15 @@ def connector_layers(connectors: Sequence[Prisms], centre: Floats) -> list[Bodie
                     for b in prisms.bodies
                 ]
             ),
-            parts=[About(body.mark, (prisms.name,)) for body in prisms.bodies],
+            parts=[
+                About(body.mark, (prisms.name,), pattern_key(prisms, body.shape))
+                for body in prisms.bodies
+            ],
         )
         for prisms, made in zip(used, meshes, strict=True)
     ]
+
+
+def pattern_key(prisms: Prisms, shape: int) -> str:
+    """What the flat pattern of a shape is asked for by."""
+    return f"{prisms.name} {shape}"

@@ -35,14 +35,22 @@ def on_screen(points: Points, centre: Floats) -> NDArray[np.float32]:
 
 @dataclass(frozen=True)
 class About:
-    """What a part says of itself: its mark, and lines of words."""
+    """What a part says of itself: its mark, and lines of words.
+
+    Parameters
+    ----------
+    pattern : what its flat pattern is asked for by; the mark without, since only equal parts share
+        one.
+    """
 
     mark: str
     lines: tuple[str, ...] = ()
+    pattern: str = ""
 
     def packed(self) -> Packed:
         """For the page."""
-        return {"mark": self.mark, "lines": list(self.lines)}
+        more = {"pattern": self.pattern} if self.pattern else {}
+        return {"mark": self.mark, "lines": list(self.lines), **more}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

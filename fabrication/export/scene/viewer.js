@@ -444,7 +444,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     if (side.hidden) { side.hidden = false; resized(); }
     chosen(words.mark);
     draw();
-    const svg = await pattern(words.mark);
+    const svg = await pattern(words.pattern || words.mark);
     if (svg && state.picked === found) {
       drawing.append(document.importNode(new DOMParser().parseFromString(svg, "image/svg+xml").documentElement, true));
     }
