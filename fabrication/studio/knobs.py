@@ -51,9 +51,12 @@ class Knob:
             return float(f"{10.0**place:.3g}")
         return round(place) if self.whole else float(round(place, 6))
 
-    def text(self, place: float) -> str:
-        """The value in words."""
-        return f"{self.chosen(place):g}{self.unit}"
+    def place(self, value: float) -> float | None:
+        """Where *value* is on the slider; None where it has no place there."""
+        if self.powers and value <= 0.0:
+            return None
+        found = log10(value) if self.powers else value
+        return found if self.low <= found <= self.high else None
 
 
 def knobs(project: Project) -> list[Knob]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -44,7 +43,6 @@ class Page:
     def __init__(self, session: Session) -> None:
         self.session = session
         self._centre: Floats | None = None
-        self._moved: dict[str, Callable[[], None]] = {}
         ui.add_css(_CSS)
         self._top()
         self._banners()
@@ -113,7 +111,6 @@ class Page:
 
     @ui.refreshable_method
     def _sliders(self) -> None:
-        self._moved = {}
         groups: dict[str, list[Knob]] = defaultdict(list)
         for knob in self.session.knobs:
             groups[knob.group].append(knob)
@@ -123,24 +120,34 @@ class Page:
                 self._slider(knob)
 
     def _slider(self, knob: Knob) -> None:
-        with ui.element("div").classes("gs-line"):
-            ui.label(knob.label)
-            value = ui.element("b").props(f'data-mark="{knob.key}"')
-            with value:
-                text = ui.label(knob.text(knob.value))
+        with ui.element("div").classes("gs-line gs-knob"):
+            unit = knob.unit.strip()
+            ui.label(f"{knob.label}, {unit}" if unit else knob.label)
+            field = ui.number(value=knob.chosen(knob.value))
+            field.props(f'dense borderless hide-bottom-space data-mark="{knob.key}"')
         slider = _Slider(min=knob.low, max=knob.high, step=knob.step, value=knob.value)
-        slider.props(f'dense color=dark aria-label="{knob.label}"').props(
-            f'data-mark="slider {knob.key}"'
-        )
+        slider.props(f'dense color=dark aria-label="{knob.label}" data-mark="slider {knob.key}"')
 
         def turned(event: Any, *, done: bool) -> None:
-            place = float(event.args)
-            text.set_text(knob.text(place))
+            value = knob.chosen(float(event.args))
+            field.set_value(value)
             if done or knob.live:
-                self.session.change(knob.key, knob.chosen(place), done=done)
+                self.session.change(knob.key, value, done=done)
+
+        def typed() -> None:
+            value = field.value
+            if value is None or value == self.session.present.value(knob.key):
+                return
+            value = round(value) if knob.whole else float(value)
+            self.session.change(knob.key, value, done=True)
+            place = knob.place(value)
+            if place is not None:
+                slider.set_value(place)
 
         slider.on("update:model-value", partial(turned, done=False), throttle=0.05)
         slider.on("change", partial(turned, done=True))
+        field.on("keydown.enter", typed)
+        field.on("blur", typed)
 
     @ui.refreshable_method
     def _figures(self) -> None:

@@ -40,7 +40,15 @@ def test_the_value_of_the_project_is_a_place_of_its_slider(version):
 def test_weights_go_by_powers_of_ten(version):
     fairness = by_key(version.project)["net.fairness"]
     assert fairness.chosen(-2.0) == 0.01
-    assert fairness.text(1.0) == "10"
+    assert fairness.chosen(1.0) == 10.0
+    assert fairness.place(0.001) == pytest.approx(-3.0)
+    assert fairness.place(0.0) is None
+
+
+def test_a_value_beyond_the_slider_has_no_place_on_it(version):
+    angle = by_key(version.project)["net.angle"]
+    assert angle.place(62.35) == 62.35
+    assert angle.place(170.0) is None
 
 
 def test_a_net_kept_to_its_surface_has_a_weight_for_that(version, path):

@@ -67,6 +67,10 @@ def figure(page, key):
     return page.locator(f".gs-line [data-mark='{key}']").last.inner_text()
 
 
+def typed(page, key):
+    return page.locator(f"input[data-mark='{key}']")
+
+
 def amount(page, key):
     return float(figure(page, key).replace("\u202f", "").split()[0])
 
@@ -158,13 +162,29 @@ def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
     assert studio.end()[0] == 130
 
 
+def test_a_number_can_be_typed_and_a_wrong_one_is_explained(chromium, studio):
+    page = opened(chromium, studio.address)
+    typed(page, "net.angle").fill("62.35")
+    typed(page, "net.angle").press("Enter")
+    page.wait_for_timeout(300)
+    ready(page)
+    assert figure(page, "node_angle_deg") == "62.35 to 62.35°"
+    typed(page, "net.angle").fill("190")
+    typed(page, "net.angle").press("Enter")
+    told = page.locator("[data-mark=trouble]")
+    told.wait_for()
+    assert "net.angle" in told.inner_text()
+    assert figure(page, "node_angle_deg") == "62.35 to 62.35°"
+    page.close()
+
+
 def test_a_browser_that_goes_away_finds_everything_again(chromium, studio):
     first = opened(chromium, studio.address)
     turn(first, "profile.width", 5)
-    assert figure(first, "profile.width") == "85 mm"
+    assert typed(first, "profile.width").input_value() == "85"
     first.close()
     again = opened(chromium, studio.address)
-    assert figure(again, "profile.width") == "85 mm"
+    assert typed(again, "profile.width").input_value() == "85"
     assert again.get_by_role("button", name="Undo").is_enabled()
     again.close()
 
