@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.angles import Angle, crossing_angles
+from gridshell.angles import Angle
 from gridshell.arrays import Floats, Indices
 from gridshell.constraints import spherical_stars
 from gridshell.curvature import principal_curvatures
@@ -23,6 +23,7 @@ from gridshell.mesh import (
     ControlMesh,
     DiagonalMesh,
     Stars,
+    crossing_angles,
     diagonal_meshes,
     diagonal_stars,
     edge_stars,
