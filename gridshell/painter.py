@@ -195,6 +195,13 @@ def polygons(points: Points, faces: Indices) -> Floats:
     return np.asarray(points[np.take_along_axis(np.where(known, faces, 0), last, axis=1)])
 
 
+def padded(outlines: Sequence[Points]) -> Floats:
+    """(m, k, 3) corners of polygons of any number of corners: the last one is repeated."""
+    most = max((len(one) for one in outlines), default=3)
+    rows = [one[np.minimum(np.arange(most), len(one) - 1)] for one in outlines]
+    return np.array(rows, dtype=np.float64).reshape(-1, most, 3)
+
+
 def painted(colour: tuple[float, float, float], count: int) -> Floats:
     """(count, 3) of one colour."""
     return np.tile(np.array(colour), (count, 1))

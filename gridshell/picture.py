@@ -44,7 +44,7 @@ _SIZE, _MARGIN = (560.0, 360.0), 6.0
 
 _SLABS, _TONES = 48, 24
 
-_STYLE = "font:13px/1.45 system-ui,sans-serif;max-width:580px"
+_STYLE = "font:13px/1.45 system-ui,sans-serif"
 _CELL = "text-align:left;padding:1px 14px 1px 0;border:0;background:none"
 
 
@@ -77,6 +77,7 @@ def card(
     *,
     picture: str = "",
     notes: Iterable[str] = (),
+    width: int = 580,
 ) -> str:
     """Title, picture, table and notes as HTML that is also XML.
 
@@ -84,6 +85,7 @@ def card(
     ----------
     title, figures, notes : text, escaped here; a figure without text is left out.
     picture : an SVG, taken as it is.
+    width : px at most.
     """
     rows = "".join(
         f'<tr style="background:none"><th scope="row" style="{_CELL};font-weight:400;opacity:0.7">'
@@ -93,8 +95,9 @@ def card(
     )
     below = "".join(f'<p style="margin:4px 0;opacity:0.7">{escape(note)}</p>' for note in notes)
     return (
-        f'<div class="gridshell" style="{_STYLE}"><div style="font-weight:600">{escape(title)}'
-        f'</div>{picture}<table style="border-collapse:collapse;margin:4px 0">{rows}</table>'
+        f'<div class="gridshell" style="{_STYLE};max-width:{width}px">'
+        f'<div style="font-weight:600">{escape(title)}</div>{picture}'
+        f'<table style="border-collapse:collapse;margin:4px 0">{rows}</table>'
         f"{below}</div>"
     )
 
