@@ -197,12 +197,14 @@ from .quad_figures import (
 from .quad_figures import (
     quad_figures as quad_figures,
 )
+from .quality import NetFigures as NetFigures
 from .quality import (
     NetQuality as NetQuality,
 )
 from .quality import (
     Spread as Spread,
 )
+from .quality import net_figures as net_figures
 from .quality import (
     net_quality as net_quality,
 )
