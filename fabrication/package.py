@@ -17,12 +17,13 @@ import numpy as np
 
 import gridshell as gs
 from fabrication.delivery import draft_folder, move_in
+from fabrication.export.quality_series import Series, net_series
 from fabrication.exporting import FORMATS, require_formats
 from fabrication.finding import Finding
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.lamella_route import LamellaRoute
 from fabrication.moulds import moulds
-from fabrication.net_checks import check_net
+from fabrication.net_checks import check_net, off_surface_limit
 from fabrication.panel_route import PanelRoute
 from fabrication.placing import keyed
 from fabrication.remesh_job import Remeshed
@@ -30,7 +31,10 @@ from fabrication.routes import Announce, Clock, Report, Route, System
 from fabrication.sections import Project
 from fabrication.starts import Start, start
 
-FILES = ("net.json", "net.obj", "parts.csv", "report.html", "report.json", "structure.step")
+FILES = (
+    *("net.json", "net.obj", "parts.csv", "structure.step"),
+    *("report.html", "report.json", "report.pdf"),
+)
 """What every run makes, besides ``sheets/*.dxf``."""
 
 _SHEETS = (
@@ -62,6 +66,7 @@ class _Design:
     control: gs.ControlMesh
     system: System
     net: Report
+    series: Sequence[Series]
     findings: Sequence[Finding]
     remeshed: Remeshed | None
 
@@ -164,6 +169,12 @@ def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Desi
         control=result.control,
         system=system,
         net=gs.net_report(result, route.planarity, seconds=seconds, quality=quality),
+        series=net_series(
+            quality.figures,
+            surface_limit=off_surface_limit(result.control)
+            if project.net.keep_to_surface
+            else None,
+        ),
         findings=[*laid, *about_net, *system.findings],
         remeshed=begun.remeshed,
     )
@@ -226,6 +237,7 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
     }
     with clock.stage("report"):
         design.system.write_page(draft / "report.html", report, _pictures(design))
+        design.system.write_paper(draft / "report.pdf", report, design.series)
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")
     return report

@@ -16,6 +16,9 @@ _STEPS = (1.0, 2.0, 5.0, 10.0)
 _CLOSE = 3.0
 """A limit beyond so many times the largest value is told, and not drawn."""
 
+_FROM_NOUGHT = 0.5
+"""The axis begins at nought where the smallest value is at most this share of its other end."""
+
 _ALIKE = 1e-9
 """Values that differ by less than this share of their size are one value."""
 
@@ -82,6 +85,7 @@ def bars_of(values: npt.ArrayLike, *, limit: float | None = None) -> Bars:
     shown = limit is not None and low - (high - low) <= limit <= max(_CLOSE * high, high)
     if limit is not None and shown:
         low, high = min(low, limit), max(high, limit)
+    low = 0.0 if 0.0 <= low <= _FROM_NOUGHT * high else low
     step = round_step((high - low) / _FEWEST)
     first, last = np.floor(low / step + 1e-9), np.ceil(high / step - 1e-9)
     stops = step * np.arange(first, max(last, first + 1.0) + 1.0)
@@ -113,15 +117,13 @@ def round_step(least: float) -> float:
 
 
 def _range(known: Floats) -> tuple[float, float]:
-    """Ends of the axis: from nought for values near it, around a single value."""
+    """Smallest and largest value, or ends around a single one."""
     if len(known) == 0 or not known.any():
         return 0.0, 1.0
     low, high = float(known.min()), float(known.max())
     size = max(abs(low), abs(high))
     if high - low <= _ALIKE * size:
         return low - 0.05 * size, high + 0.05 * size
-    if 0.0 <= low <= 0.5 * high:
-        return 0.0, high
     return low, high
 
 

@@ -72,7 +72,7 @@ def limit_words(bars: Bars, unit: str) -> str:
 
 def _with(value: float, unit: str) -> str:
     text = number(value, 3)
-    return f"{text} {unit}" if "×" in text else f"{text}{_spaced(unit)}"
+    return f"{text} {unit}".rstrip() if "×" in text else f"{text}{_spaced(unit)}"
 
 
 def _spaced(unit: str) -> str:

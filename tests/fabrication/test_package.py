@@ -28,7 +28,8 @@ SMALL = {
     "sheet": {"length": 4000.0, "width": 350.0},
 }
 FILES = {
-    *["net.json", "net.obj", "report.json", "report.html", "structure.step", "parts.csv"],
+    *["net.json", "net.obj", "structure.step", "parts.csv"],
+    *["report.json", "report.html", "report.pdf"],
     *["assembly.csv", "bays.csv", "bill.csv", "drawings.pdf"],
     *["sheets/sheet-01.dxf", "sheets/sheet-02.dxf"],
 }
