@@ -38,12 +38,15 @@ _GRADES = {
 }
 _UNKNOWN = (0.35, 0.39, 0.45)
 
+_PLACES = 6
+"""Of a kind of finding, where it was found, at most."""
+
 _FINDINGS = (
     Column("severity", 0.8),
     Column("code", 1.4),
     Column("places", 0.6, "right"),
-    Column("the first", 1.0),
-    Column("what it says", 5.2),
+    Column("where", 1.4),
+    Column("what the first says", 4.8),
 )
 
 
@@ -124,7 +127,9 @@ def found(report: Mapping[str, Any], unchecked: str) -> Iterator[Block]:
 def _finding_row(group: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
     first = group[0]
     words = (str(first.get(key, "")) for key in ("severity", "code"))
-    return (*words, f"{len(group)}", str(first.get("where", "")), str(first.get("message", "")))
+    places = [str(finding.get("where", "")) for finding in group]
+    told = ", ".join(places[:_PLACES]) + (" ..." if len(places) > _PLACES else "")
+    return (*words, f"{len(group)}", told, str(first.get("message", "")))
 
 
 def charts(series: Sequence[Series]) -> Iterator[Block]:
