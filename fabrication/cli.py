@@ -23,6 +23,7 @@ from fabrication.lint_cli import lint
 from fabrication.new_cli import new
 from fabrication.optimize_cli import optimize
 from fabrication.remesh_cli import remesh
+from fabrication.view_cli import view
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -40,6 +41,7 @@ app.command()(optimize)
 app.command()(lint)
 app.command()(gallery)
 app.command()(new)
+app.command()(view)
 
 _STAGES = 11
 

@@ -61,6 +61,8 @@ KEYS: dict[str, dict[str, str]] = {
         "supports": "places the net stands on, mm",
         "keep_to_surface": "stay near the surface; false takes a new form",
         "skin": "which diagonal mesh is built, or P, the checkerboard pattern, for panels",
+        "fairness": "weight at first of even polylines: more keeps bays even",
+        "proximity": "weight at first of the distance from the surface",
         "steps": "factorisations at most",
         "tolerance": "largest residual, over the mean edge",
     },

@@ -183,6 +183,7 @@ class LamellaSystem:
             facade=None if self.facade is None else self.facade.built,
             pictures=pictures,
             copies=() if self.segmented is None else self.segmented.segments.poses[1:],
+            moving=None if self.moving is None else (self.moving.motion, self.moving.opening),
         )
 
     def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:

@@ -28,7 +28,7 @@ from fabrication.panel_route import PanelRoute
 from fabrication.placing import keyed
 from fabrication.remesh_job import Remeshed
 from fabrication.routes import Announce, Clock, Report, Route, System
-from fabrication.sections import Project
+from fabrication.sections import NetSection, Project
 from fabrication.starts import Start, start
 
 FILES = (
@@ -149,35 +149,57 @@ def route_of(project: Project) -> Route:
 def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Design:
     begun = start(project, folder, clock.stage)
     with clock.stage("optimise"):
-        recipe = route.recipe(folder)
-        result = _found(optimised(project, recipe, begun), begun)
-        quality = gs.net_quality(
-            result.control,
-            planarity=route.planarity,
-            angle=recipe.angle,
-            rhombus=recipe.rhombus,
-            reference=begun.surface,
-        )
-        if project.umbrella is not None:  # D2 only fills it: its quads have no node angle
-            angles = np.degrees(gs.umbrella_of(result.control).node_angles)
-            quality = replace(quality, node_angle_deg=(float(angles.min()), float(angles.max())))
+        net = net_of(project, route, folder, begun)
+        result, quality = net.result, net.quality
     system = route.build(result.control, clock)
     about_net = check_net(result, quality, kept=project.net.keep_to_surface)
+    limit = off_surface_limit(result.control) if project.net.keep_to_surface else None
     laid = () if begun.remeshed is None else begun.remeshed.findings
     seconds = clock.seconds["optimise"]
     return _Design(
         control=result.control,
         system=system,
         net=gs.net_report(result, route.planarity, seconds=seconds, quality=quality),
-        series=net_series(
-            quality.figures,
-            surface_limit=off_surface_limit(result.control)
-            if project.net.keep_to_surface
-            else None,
-        ),
+        series=net_series(quality.figures, surface_limit=limit),
         findings=[*laid, *about_net, *system.findings],
         remeshed=begun.remeshed,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class FoundNet:
+    """A net with what it was asked for, and how well it meets that."""
+
+    recipe: gs.NetRecipe
+    result: gs.OptimizedNet
+    quality: gs.NetQuality
+
+
+def net_of(
+    project: Project,
+    route: Route,
+    folder: Path,
+    begun: Start,
+    progress: gs.Progress | None = None,
+) -> FoundNet:
+    """The net of *project* from where it begins.
+
+    Parameters
+    ----------
+    progress : called after every step with its number and the step.
+
+    Raises
+    ------
+    SolveError
+        When none is found near the start.
+    """
+    recipe = route.recipe(folder)
+    result = _found(optimised(project, recipe, begun, progress), begun)
+    quality = gs.measured_against(result.quality, result.control, begun.surface)
+    if project.umbrella is not None:  # D2 only fills it: its quads have no node angle
+        angles = np.degrees(gs.umbrella_of(result.control).node_angles)
+        quality = replace(quality, node_angle_deg=(float(angles.min()), float(angles.max())))
+    return FoundNet(recipe, result, quality)
 
 
 _CAUSES = ("angle-infeasible", "not-integrable")
@@ -203,15 +225,36 @@ def _found(result: gs.OptimizedNet, begun: Start) -> gs.OptimizedNet:
         ) from None
 
 
-def optimised(project: Project, recipe: gs.NetRecipe, begun: Start) -> gs.OptimizedNet:
-    """The net from where it begins, held and kept to its surface as the project says."""
+def optimised(
+    project: Project,
+    recipe: gs.NetRecipe,
+    begun: Start,
+    progress: gs.Progress | None = None,
+) -> gs.OptimizedNet:
+    """The net from where it begins, held, weighted and kept to its surface as the project says.
+
+    Parameters
+    ----------
+    progress : called after every step with its number and the step.
+    """
     net = project.net
+    recipe = _weighted(recipe, net)
     control, reference = begun.control, begun.surface if net.keep_to_surface else None
     if net.supports is None:
-        return gs.optimize(control, recipe, anchor=_ANCHORS[net.anchor], reference=reference)
-    with keyed("net"):
-        control, held = gs.stand_on(control, np.array(net.supports))
-    return gs.optimize(control, recipe, anchor=held, reference=reference)
+        anchor: gs.Anchor = _ANCHORS[net.anchor]
+    else:
+        with keyed("net"):
+            control, anchor = gs.stand_on(control, np.array(net.supports))
+    return gs.optimize(control, recipe, anchor=anchor, reference=reference, progress=progress)
+
+
+def _weighted(recipe: gs.NetRecipe, net: NetSection) -> gs.NetRecipe:
+    """*recipe* with the guiding weights of ``[net]``; those that are unset stay its own."""
+    if net.fairness is not None:
+        recipe = replace(recipe, fairness=replace(recipe.fairness, start=net.fairness))
+    if net.proximity is not None:
+        recipe = replace(recipe, proximity=replace(recipe.proximity, start=net.proximity))
+    return recipe
 
 
 # ---- files -------------------------------------------------------------------------------------

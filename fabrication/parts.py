@@ -111,7 +111,7 @@ class FlatPart:
 
     def _repr_html_(self) -> str:
         """For notebooks: the flat pattern; families are told apart by the mark."""
-        from fabrication.export.report import strip_svg
+        from fabrication.export.strip_picture import strip_svg
 
         return card(
             f"Strip {self.mark}",

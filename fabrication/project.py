@@ -11,7 +11,7 @@ from __future__ import annotations
 import difflib
 import json
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, get_args
 
@@ -69,8 +69,20 @@ def read_project(path: Path | str) -> Project:
         do not go together.
     """
     path = Path(path)
+    return project_of(read_document(path)[1], path)
+
+
+def read_document(path: Path) -> tuple[str, dict[str, Any]]:
+    """The text of a project file, and the tables it holds.
+
+    Raises
+    ------
+    ProjectError
+        When it cannot be read or is not TOML.
+    """
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        text = path.read_text(encoding="utf-8-sig")
+        return text, tomllib.loads(text)
     except OSError as error:
         raise ProjectError(
             "The project file cannot be read",
@@ -80,6 +92,16 @@ def read_project(path: Path | str) -> Project:
         ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ProjectError("The project file is not TOML", where=f"{path}: {error}") from None
+
+
+def project_of(document: Mapping[str, Any], path: Path) -> Project:
+    """Validate what a project file holds; files it names are looked for beside *path*.
+
+    Raises
+    ------
+    ProjectError
+        As :func:`read_project`.
+    """
     try:
         project = Project.model_validate(document)
     except ValidationError as error:

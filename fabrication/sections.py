@@ -48,6 +48,9 @@ from fabrication.source_sections import (
     SurfaceSource,
 )
 
+WeightNumber = Annotated[float, Field(ge=1e-6, le=1e4)]
+"""Of a guiding term, at unit mean edge."""
+
 
 class NetSection(Section):
     """What the net must be and what holds its shape meanwhile."""
@@ -71,6 +74,12 @@ class NetSection(Section):
     ] = None
     keep_to_surface: bool = True
     skin: Literal["D1", "D2", "P"] = "D1"
+    fairness: Annotated[WeightNumber | None, Field(description="0.01, less from step to step")] = (
+        None
+    )
+    proximity: Annotated[WeightNumber | None, Field(description="0.1, less from step to step")] = (
+        None
+    )
     steps: Annotated[Whole, Field(ge=1, le=10_000)] = 30
     tolerance: Positive = 1e-9
 

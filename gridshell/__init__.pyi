@@ -204,6 +204,9 @@ from .quality import (
 from .quality import (
     Spread as Spread,
 )
+from .quality import (
+    measured_against as measured_against,
+)
 from .quality import net_figures as net_figures
 from .quality import (
     net_quality as net_quality,

@@ -6,17 +6,22 @@ jet, Cazals and Pottmann 2005); two passes, the second over the plane the first 
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
-from gridshell.arrays import Floats, Indices, Points, Vectors, unit
+from gridshell.arrays import Floats, Indices, Points, Vectors, frozen, unit
 from gridshell.errors import NotHyperbolicError
 from gridshell.mesh import QuadMesh, position
 
 _LEAST_SAMPLES = 14
 _FLAT = 1e-8
 _TOLERATED = 0.01
+_KEPT = 4
+"""Meshes whose curvatures are kept: a net is judged more than once."""
 
 
+@lru_cache(maxsize=_KEPT)
 def principal_curvatures(mesh: QuadMesh, *, most: int | None = None) -> tuple[Indices, Floats]:
     """Principal curvatures at the vertices whose two rings hold enough neighbours.
 
@@ -32,7 +37,7 @@ def principal_curvatures(mesh: QuadMesh, *, most: int | None = None) -> tuple[In
     """
     centre, neighbours = _two_rings(mesh, most)
     if len(centre) == 0:
-        return centre, np.empty((0, 2))
+        return centre, frozen(np.empty((0, 2)))
     inside = neighbours >= 0
     normals = vertex_normals(mesh)[centre]
     for _ in range(2):
@@ -43,7 +48,7 @@ def principal_curvatures(mesh: QuadMesh, *, most: int | None = None) -> tuple[In
         jet = _fit(local / size, inside)
         gradient = np.concatenate([-jet[:, :2], np.ones((len(jet), 1))], axis=1)
         normals = unit(np.einsum("mi,mic->mc", gradient, frames))
-    return centre, _curvatures(jet) / size[:, 0]
+    return frozen(centre, np.int64), frozen(_curvatures(jet) / size[:, 0])
 
 
 def require_hyperbolic(mesh: QuadMesh) -> None:
@@ -116,9 +121,10 @@ def _fit(local: Points, inside: np.ndarray) -> Floats:
     weight = inside * np.exp(-2.0 * (x * x + y * y))
     terms = [x, y, x * x, x * y, y * y, x**3, x * x * y, x * y * y, y**3]
     basis = np.stack(terms, axis=-1) * weight[..., None]
-    gram = np.einsum("mki,mkj->mij", basis, basis) + 1e-12 * np.eye(9)
-    right = np.einsum("mki,mk->mi", basis, z * weight)
-    return np.linalg.solve(gram, right[..., None])[..., 0]
+    across = basis.swapaxes(1, 2)
+    gram = across @ basis + 1e-12 * np.eye(9)
+    right = across @ (z * weight)[..., None]
+    return np.linalg.solve(gram, right)[..., 0]
 
 
 def _curvatures(jet: Floats) -> Floats:

@@ -10,7 +10,7 @@ over the star's mean edge.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -120,18 +120,18 @@ def net_quality(
         control, planarity=planarity, angle=angle, rhombus=rhombus, reference=reference
     )
     return NetQuality(
-        star_planarity=_spread(found.star_planarity),
-        face_planarity=_spread(found.face_planarity),
-        sphericity=_spread(found.sphericity),
-        angle_error_deg=_spread(found.angle_error_deg),
+        star_planarity=_told(found.star_planarity),
+        face_planarity=_told(found.face_planarity),
+        sphericity=_told(found.sphericity),
+        angle_error_deg=_told(found.angle_error_deg),
         node_angle_deg=_range(found.node_angle_deg),
-        rhombus_error=_spread(found.rhombus_error),
+        rhombus_error=_told(found.rhombus_error),
         edge_ratio=_range(found.edge_ratio),
         corner_angle_deg=_range(found.corner_angle_deg),
         collapsed=int(
             np.count_nonzero(collapsed(control.vertices, control.quads, control.mesh.mean_edge))
         ),
-        surface_distance_mm=_spread(found.surface_distance_mm),
+        surface_distance_mm=_told(found.surface_distance_mm),
         curvature_ratio=curvature_ratio(control),
         figures=found,
     )
@@ -162,7 +162,7 @@ def net_figures(
         rhombus_error=_rhombus_error(control) if rhombus else None,
         edge_ratio=_net_edges(control, planarity),
         corner_angle_deg=np.degrees(corner_angles(vertices, quads)).ravel(),
-        surface_distance_mm=None if reference is None else _distance(control, reference),
+        surface_distance_mm=None if reference is None else _distances(control, reference),
     )
 
 
@@ -268,12 +268,22 @@ def curvature_ratio(control: ControlMesh) -> float | None:
     return float(np.median(small[:, 0] / np.where(small[:, 1] == 0.0, np.inf, small[:, 1])))
 
 
-def _distance(control: ControlMesh, reference: Surface) -> Floats:
+def measured_against(quality: NetQuality, control: ControlMesh, reference: Surface) -> NetQuality:
+    """*quality* of *control* with its distance from *reference*, kept to it or not."""
+    away = _distances(control, reference)
+    figures = replace(quality.figures, surface_distance_mm=away)
+    return replace(quality, surface_distance_mm=_spread(away), figures=figures)
+
+
+def _distances(control: ControlMesh, reference: Surface) -> Floats:
+    """(n,) of the vertices in use, mm."""
     points = control.vertices[control.mesh.valence > 0]
     return np.asarray(np.linalg.norm(points - reference.closest(points).points, axis=1))
 
 
-def _spread(figures: Floats | None) -> Spread | None:
-    if figures is None:
-        return None
+def _spread(figures: Floats) -> Spread:
     return Spread(float(figures.mean()), float(figures.max())) if len(figures) else Spread(0.0, 0.0)
+
+
+def _told(figures: Floats | None) -> Spread | None:
+    return None if figures is None else _spread(figures)

@@ -24,6 +24,7 @@ from fabrication.export.scene.panels import (
 from fabrication.export.scene.strips import axis_layers
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import COLOURS, PanelStructure
+from gridshell.arrays import Floats
 
 
 def write_panel_report(
@@ -88,10 +89,18 @@ def write_panel_report(
         ) from None
 
 
-def panel_scene(built: PanelStructure, net: gs.ControlMesh | None = None) -> Scene:
-    """Panels, plates, connectors and marks; *net* adds the layers of the control mesh."""
+def panel_scene(
+    built: PanelStructure, *, net: gs.ControlMesh | None = None, centre: Floats | None = None
+) -> Scene:
+    """Panels, plates, connectors and marks.
+
+    Parameters
+    ----------
+    net : the control mesh; its layers are left out without.
+    centre : (3,) mm, the origin of the scene; the middle of the vertices without.
+    """
     vertices = built.mesh.vertices
-    centre = middle(vertices)
+    centre = middle(vertices) if centre is None else centre
     layers = [*panel_layers(built, centre), *support_layers(built, centre)]
     layers += [] if net is None else net_layers(net, centre)
     return Scene([*layers, *axis_layers(on_screen(vertices, centre))], plate_colouring(built))

@@ -23,6 +23,7 @@ from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.errors import OutputError
 from fabrication.export.scene.bodies import connector_layers
 from fabrication.export.scene.layers import Layer, Scene, on_screen
+from fabrication.export.scene.motion import motion_layers
 from fabrication.export.scene.net import net_layers
 from fabrication.export.scene.page import as_json, deflated, scripts, style
 from fabrication.export.scene.panels import panel_layers
@@ -33,6 +34,7 @@ from fabrication.export.strip_drawing import strip_drawing
 from fabrication.export.words import finite, fixed, number, plural, raised
 from fabrication.finding import Severity
 from fabrication.jointed import Jointed
+from fabrication.motion import Motion
 from fabrication.nesting import NestedSheet, sheets_of
 from fabrication.outlines import Frame
 from fabrication.panel_structure import PanelStructure
@@ -55,6 +57,7 @@ def write_report(
     facade: PanelStructure | None = None,
     pictures: Sequence[Mapping[str, Any]] = (),
     copies: Sequence[Frame] = (),
+    moving: tuple[Motion, float] | None = None,
 ) -> None:
     """Write the page.
 
@@ -70,6 +73,7 @@ def write_report(
     facade : panels above the strips, where there are any.
     pictures : of the way from the surface to the net, see ``stages``.
     copies : where else the shell stands, drawn as lines.
+    moving : how the net opens, and how far it is opened as built.
 
     Raises
     ------
@@ -83,7 +87,7 @@ def write_report(
         name=name,
         report=report,
         pictures=pictures,
-        scene=lamella_scene(jointed, parts, stress, facade=facade, copies=copies),
+        scene=lamella_scene(jointed, parts, stress, facade=facade, copies=copies, moving=moving),
         patterns=flat_patterns(jointed, parts),
         stress=stress_section(stress),
         net_section=net_words(stress),
@@ -119,21 +123,27 @@ def lamella_scene(
     facade: PanelStructure | None = None,
     copies: Sequence[Frame] = (),
     net: gs.ControlMesh | None = None,
+    moving: tuple[Motion, float] | None = None,
+    centre: Floats | None = None,
 ) -> Scene:
     """Strips, nodes, connectors, and the panels above them, hidden until they are asked for.
 
     Parameters
     ----------
     net : the control mesh; its layers are left out without.
+    moving : how the net opens, and how far it is opened as built.
+    centre : (3,) mm, the origin of the scene; the middle of the nodes without.
     """
     nodes = np.array([node.position for node in jointed.design.nodes])
-    centre = middle(nodes)
+    centre = middle(nodes) if centre is None else centre
     layers: list[Layer] = strip_layers(jointed, parts, stress, centre, copies)
     layers += connector_layers(jointed.connectors, centre)
     if facade is not None:
         layers += panel_layers(facade, centre, visible=False)
     if net is not None:
         layers += net_layers(net, centre)
+    if moving is not None:
+        layers += motion_layers(moving[0], centre, moving[1])
     return Scene([*layers, *axis_layers(on_screen(nodes, centre))], stress_colourings(stress))
 
 

@@ -170,9 +170,10 @@ class _Run:
         energies = MappingProxyType(
             {term.name: e for term, e in zip(problem.terms, before, strict=True)}
         )
+        unmet = max((largest[t.name] for t in problem.terms if t.goal), default=0.0)
         seconds = time.perf_counter() - start
         self.steps.append(
-            Step(sum(before), largest, state.damping, accepted, energies, length, seconds)
+            Step(sum(before), largest, unmet, state.damping, accepted, energies, length, seconds)
         )
 
     def _take(self, x: Floats, gain: float, known: Sequence[Evaluation]) -> None:

@@ -33,6 +33,7 @@ class Step:
     energy : weighted sum of squares before the step, at this step's weights.
     energies : the same by term.
     residuals : largest absolute residual of each term after the step.
+    unmet : largest absolute residual of any goal after the step; 0 without goals.
     damping : added to the diagonal.
     accepted : whether the step lowered the energy and was taken.
     length : share of the step that was tried last; below 1 where the whole would break the guard.
@@ -41,6 +42,7 @@ class Step:
 
     energy: float
     residuals: MappingProxyType[str, float]
+    unmet: float
     damping: float
     accepted: bool
     energies: MappingProxyType[str, float]

@@ -53,6 +53,7 @@ class Layer:
     ----------
     colour : CSS.
     built : shown only while the strips are in place.
+    of_net : of the net itself: shown while what is built on it is still to come.
     """
 
     kind: ClassVar[str]
@@ -61,6 +62,7 @@ class Layer:
     colour: str = "#5a6472"
     visible: bool = True
     built: bool = True
+    of_net: bool = False
 
     def packed(self) -> Packed:
         """For the page."""
@@ -71,6 +73,7 @@ class Layer:
             "colour": self.colour,
             "visible": self.visible,
             "built": self.built,
+            "of_net": self.of_net,
             **self.arrays(),
         }
 

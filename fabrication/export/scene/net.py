@@ -36,6 +36,7 @@ def net_layers(control: gs.ControlMesh, centre: Floats, *, shown: bool = False) 
             name="Control mesh",
             colour=_MESH,
             visible=False,
+            of_net=True,
             points=edges,
             counts=[2] * (len(edges) // 2),
         ),
@@ -48,6 +49,7 @@ def net_layers(control: gs.ControlMesh, centre: Floats, *, shown: bool = False) 
                 name="Net D1",
                 colour=css(FAMILY_COLOURS[family]),
                 visible=shown,
+                of_net=True,
                 points=on_screen(chosen, centre),
                 counts=[2] * (len(chosen) // 2),
             )
@@ -59,6 +61,7 @@ def net_layers(control: gs.ControlMesh, centre: Floats, *, shown: bool = False) 
             name="Diagonal mesh D2",
             colour=_SECOND,
             visible=False,
+            of_net=True,
             points=on_screen(other, centre),
             counts=[2] * (len(other) // 2),
         )
@@ -80,6 +83,7 @@ def _quads(
         name=name,
         colour=colour,
         visible=False,
+        of_net=True,
         points=on_screen(vertices, centre),
         triangles=triangles,
         sizes=[2] * len(quads),

@@ -67,7 +67,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   const mark = new THREE.MeshBasicMaterial({ color: ACCENT, side: THREE.DoubleSide });
   const picker = new THREE.Raycaster();
 
-  const state = { layers: new Map(), maps: [], scale: [], table: null, map: null, bend: 1, picked: null, under: null, home: [0.62, -0.64, 0.46], frames: 0, rows: [] };
+  const state = { layers: new Map(), maps: [], scale: [], table: null, map: null, bend: 1, opened: null, pending: false, picked: null, under: null, home: [0.62, -0.64, 0.46], frames: 0, rows: [], news: 0 };
   let waiting = false, dragging = false;
 
   // ---- drawing ------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     pen.textBaseline = "middle";
     const at = new THREE.Vector3();
     for (const { layer, shown, made: own } of state.layers.values()) {
-      if (layer.kind !== "labels" || !shown || (layer.built && state.bend < 1)) continue;
+      if (layer.kind !== "labels" || !visible(layer, shown)) continue;
       layer.texts.forEach((text, n) => {
         at.fromArray(own.points, 3 * n).project(camera);
         if (at.z > 1) return;
@@ -127,7 +127,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
 
   function everything() {
     const all = [];
-    for (const { layer, made: own, shown } of state.layers.values()) if (shown && layer.kind !== "labels") all.push(own.points);
+    for (const { layer, made: own, shown } of state.layers.values()) if (visible(layer, shown) && layer.kind !== "labels") all.push(own.points);
     if (!all.length) for (const { made: own } of state.layers.values()) all.push(own.points);
     return all.filter((points) => points.length);
   }
@@ -179,19 +179,23 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   const read = (maps) => maps.map((map) => ({ ...map, values: unpacked(map.values) }));
 
   // New contents of some layers; everything else, and where one looks from, stays.
-  function replace({ layers = [], maps = null, gone = [] }) {
-    for (const id of gone) remove(id);
-    for (const layer of layers) {
-      const before = state.layers.get(layer.id), first = state.layers.size === 0;
-      remove(layer.id);
-      add(layer, before ? before.shown : layer.visible);
-      if (first) frame();
-    }
-    if (maps) state.maps = read(maps);
+  // *pending*: the net is new, what is built on it still to come; else the layers are all there are.
+  function replace({ layers = [], maps, scale }, { pending = false } = {}) {
+    const before = new Map([...state.layers].map(([id, { shown }]) => [id, shown])), first = before.size === 0;
+    const fresh = new Set(layers.map(({ id }) => id));
+    for (const id of before.keys()) if (!pending || fresh.has(id)) remove(id);
+    for (const layer of layers) add(layer, before.has(layer.id) ? before.get(layer.id) : pending ? false : layer.visible);
+    Object.assign(state, { pending, scale, table: ramp(scale) });
+    if (!pending || first) state.maps = read(maps);
+    else state.maps = [...read(maps), ...state.maps.filter(({ on }) => on !== "quads")];
     settle();
+    if (first) frame();
+    renderer.render(world, camera);
+    state.news = performance.now();
   }
 
   function settle() {
+    const picked = state.picked?.name;
     pick(null);
     const shown = state.maps.find(({ name }) => name === state.map);
     state.map = shown ? state.map : null;
@@ -200,6 +204,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     listed();
     barred();
     shade();
+    if (picked && !state.pending) pick(find(picked));
     draw();
   }
 
@@ -219,15 +224,24 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
 
   function seen() {
     for (const { layer, made: own, shown } of state.layers.values()) {
-      const visible = shown && !(layer.built && state.bend < 1);
-      for (const object of own.objects) object.visible = visible;
+      for (const object of own.objects) object.visible = visible(layer, shown);
     }
     draw();
   }
 
+  // While the strips bend or the net opens, only what moves is seen; while a net waits for what is
+  // built on it, only the net.
+  function visible(layer, shown) {
+    if (layer.kind === "positions") return state.opened !== null;
+    if (layer.id.startsWith("axes") || layer.id === "axis-names") return shown;
+    if (state.opened !== null) return false;
+    if (state.pending) return layer.of_net && (shown || layer.id.startsWith("D1"));
+    return shown && !(layer.built && state.bend < 1);
+  }
+
   function listed() {
     const groups = new Map();
-    for (const entry of state.layers.values()) groups.set(entry.layer.name, [...(groups.get(entry.layer.name) || []), entry]);
+    for (const entry of state.layers.values()) if (entry.layer.kind !== "positions") groups.set(entry.layer.name, [...(groups.get(entry.layer.name) || []), entry]);
     list.replaceChildren(...[...groups].map(([name, entries]) => {
       const line = tag("label", "gv-layer"), box = tag("input", "");
       box.type = "checkbox";
@@ -288,7 +302,10 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     const kinds = [...state.layers.values()].map(({ layer }) => layer.kind);
     if (kinds.includes("strips")) parts.push(slider("Flat to built", 0, 100, Math.round(100 * state.bend), (value) => bend(value / 100), "gv-bend"));
     const moving = [...state.layers.values()].find(({ layer }) => layer.kind === "positions");
-    if (moving) parts.push(slider("Opening", 0, moving.layer.frames.length - 1, moving.made.number, open, "gv-open"));
+    if (moving) {
+      parts.push(slider("Opening", 0, moving.layer.frames.length - 1, moving.made.number, open, "gv-open"));
+      if (state.opened !== null) parts.push(button("As built", () => open(null)));
+    }
     foot.replaceChildren(...parts);
   }
 
@@ -338,8 +355,15 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   }
 
   function open(number) {
-    for (const { layer, made: own } of state.layers.values()) if (layer.kind === "positions") own.open(number);
-    draw();
+    const before = state.opened;
+    state.opened = number;
+    if (number !== null) for (const { layer, made: own } of state.layers.values()) if (layer.kind === "positions") own.open(number);
+    if ((before === null) !== (number === null)) {
+      if (number === null) footed();
+      else if (!foot.querySelector(".gv-back")) foot.append(Object.assign(button("As built", () => open(null)), { className: "gv-button gv-back" }));
+      pick(null);
+    }
+    seen();
   }
 
   // ---- parts --------------------------------------------------------------------------------

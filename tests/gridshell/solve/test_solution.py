@@ -9,6 +9,7 @@ from gridshell.solve import Solution, history
 STEP = gs.Step(
     energy=1.0,
     residuals=MappingProxyType({"star": 1e-2}),
+    unmet=1e-2,
     damping=1e-6,
     accepted=True,
     energies=MappingProxyType({"star": 0.75, "fairness": 0.25}),
@@ -52,7 +53,7 @@ def test_the_full_report_has_a_line_per_step_with_every_term():
 
 
 def test_a_refused_step_says_so():
-    refused = gs.Step(1.0, STEP.residuals, 1e-6, False, STEP.energies, 0.0625, 0.1)
+    refused = gs.Step(1.0, STEP.residuals, STEP.unmet, 1e-6, False, STEP.energies, 0.0625, 0.1)
     line = history("Stalled.", (refused,)).splitlines()[-1]
     assert "1 refused" in line
     assert "0.0625" in line

@@ -1,0 +1,232 @@
+"""A click through the studio in a browser; what it shows against what report.json says."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import tomllib
+
+import pytest
+
+pytestmark = pytest.mark.xdist_group("browser")
+
+MAIN = "from fabrication.cli import main; main()"
+
+WAIT = 60_000
+
+
+class Studio:
+    """A running ``gridshell view`` and its address."""
+
+    def __init__(self, path, *more):
+        command = [sys.executable, "-c", MAIN, "view", str(path), "--no-browser"]
+        alone = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST")}
+        self.process = subprocess.Popen(
+            [*command, *more],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env=alone,
+        )
+        self.said = self.process.stdout.readline()
+        found = re.search(r"http://\S+", self.said)
+        self.address = found[0] if found else None
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        more, _ = self.process.communicate(timeout=20)
+        return self.process.returncode, more
+
+
+def opened(chromium, address, told=None):
+    page = chromium.new_page(viewport={"width": 1500, "height": 950})
+    page.set_default_timeout(WAIT)
+    if told is not None:
+        page.on("pageerror", lambda error: told.append(str(error)))
+        page.on("request", lambda request: told.append(request.url))
+    for _ in range(60):
+        try:
+            page.goto(address)
+            break
+        except Exception:  # noqa: BLE001 - the server is about to listen
+            time.sleep(0.25)
+    ready(page)
+    return page
+
+
+def ready(page):
+    page.locator(".gv-layers label").first.wait_for()
+    page.get_by_text("Up to date").wait_for()
+
+
+def figure(page, key):
+    return page.locator(f".gs-line [data-mark='{key}']").last.inner_text()
+
+
+def amount(page, key):
+    return float(figure(page, key).replace("\u202f", "").split()[0])
+
+
+def turn(page, key, presses):
+    """Move a slider by so many steps, to the right where positive."""
+    page.locator(f"[data-mark='slider {key}'] [tabindex='0']").focus()
+    for _ in range(abs(presses)):
+        page.keyboard.press("ArrowRight" if presses > 0 else "ArrowLeft")
+    page.wait_for_timeout(300)
+    ready(page)
+
+
+@pytest.fixture
+def studio(path):
+    running = Studio(path)
+    yield running
+    if running.process.poll() is None:
+        running.end()
+
+
+def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
+    told = []
+    page = opened(chromium, studio.address, told)
+
+    # the net as it is
+    assert page.locator(".gs-name").first.inner_text() == "pavilion"
+    assert figure(page, "node_angle_deg") == "70.00 to 70.00°"
+    assert figure(page, "lamellas") == "11"
+
+    # a slider finds a new net; undo brings the old one back
+    turn(page, "net.angle", -10)
+    assert figure(page, "node_angle_deg") == "65.00 to 65.00°"
+    assert page.locator(".gs-name").first.inner_text() == "pavilion •"
+    assert page.locator("[aria-label='Largest residual by step'] circle").count() > 2
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_timeout(300)
+    ready(page)
+    assert figure(page, "node_angle_deg").startswith(("70.00", "65.50"))
+    page.get_by_role("button", name="Redo").click()
+    page.wait_for_timeout(300)
+    ready(page)
+    assert figure(page, "node_angle_deg") == "65.00 to 65.00°"
+
+    # layers and colours
+    names = page.locator(".gv-layer").all_inner_texts()
+    wanted = {"Family A", "Family B", "Nodes", "Node axes", "Control mesh", "Net D1"}
+    assert wanted | {"Diagonal mesh D2", "Checkerboard"} <= set(names)
+    page.get_by_role("button", name="Distance to surface").click()
+    assert page.locator(".gv-high").inner_text().endswith(" mm")
+    assert page.get_by_label("Control mesh").is_checked()
+    page.get_by_role("button", name="Utilisation").click()
+    assert "100 %" in page.locator(".gv-high").inner_text()
+
+    # a part alone, with its flat pattern beside
+    page.evaluate("() => view.select('A3')")
+    page.locator(".gv-pattern svg").wait_for()
+    assert "A3" in page.locator(".gv-side").inner_text()
+    page.keyboard.press("Escape")
+
+    # the package, and a copy of the project
+    page.get_by_role("button", name="Write the package").click()
+    page.get_by_role("dialog").get_by_role("button", name="Write the package").click()
+    page.get_by_text("The package is in pavilion-package/.").wait_for()
+    page.get_by_role("button", name="Save as project").click()
+    page.get_by_role("dialog").get_by_role("button", name="Save as project").click()
+    page.get_by_text("Saved a copy as pavilion-2.toml.").wait_for()
+    saved = tomllib.loads((path.parent / "pavilion-2.toml").read_text())
+    assert saved["net"]["angle"] == 65.0
+    report = json.loads((path.parent / "pavilion-package" / "report.json").read_text())
+    built, net = report["structure"], report["net"]
+    assert figure(page, "lamellas") == str(built["lamellas"])
+    assert figure(page, "nodes") == str(built["nodes"])
+    assert figure(page, "total_length_m") == f"{built['total_length_m']:.1f} m"
+    assert amount(page, "mass_kg") == pytest.approx(built["mass_kg"], rel=1e-3)
+    assert figure(page, "faces") == str(net["faces"])
+    low, high = net["node_angle_deg"]["min"], net["node_angle_deg"]["max"]
+    assert figure(page, "node_angle_deg") == f"{low:.2f} to {high:.2f}°"
+    away = amount(page, "surface_distance_mm")
+    assert away == pytest.approx(net["surface_distance_mm"]["max"], rel=1e-3)
+    used = report["stress"]["utilisation"]["max"]
+    assert figure(page, "utilisation") == f"{100 * used:.0f} %"
+
+    # nothing was fetched from elsewhere, and the page had no fault
+    host = studio.address.split("/?")[0]
+    here = (host, host.replace("http", "ws", 1), "data:", "blob:")
+    assert [line for line in told if not line.startswith(here)] == []
+    page.close()
+    assert studio.end()[0] == 130
+
+
+def test_a_browser_that_goes_away_finds_everything_again(chromium, studio):
+    first = opened(chromium, studio.address)
+    turn(first, "profile.width", 5)
+    assert figure(first, "profile.width") == "85 mm"
+    first.close()
+    again = opened(chromium, studio.address)
+    assert figure(again, "profile.width") == "85 mm"
+    assert again.get_by_role("button", name="Undo").is_enabled()
+    again.close()
+
+
+def test_what_another_program_wrote_is_told_and_can_be_loaded(chromium, studio, path):
+    page = opened(chromium, studio.address)
+    path.write_text(path.read_text().replace("70.0", "64.0"))
+    page.get_by_text("was changed by another program").wait_for()
+    page.get_by_role("button", name="Load it").click()
+    page.wait_for_timeout(300)
+    ready(page)
+    assert figure(page, "node_angle_deg") == "64.00 to 64.00°"
+    page.close()
+
+
+def test_a_solve_that_fails_says_so_on_the_page(chromium, path):
+    path.write_text(path.read_text().replace('anchor = "free"', 'anchor = "free"\nsteps = 5'))
+    studio = Studio(path)
+    try:
+        page = chromium.new_page()
+        page.set_default_timeout(WAIT)
+        for _ in range(60):
+            try:
+                page.goto(studio.address)
+                break
+            except Exception:  # noqa: BLE001 - the server is about to listen
+                time.sleep(0.25)
+        page.locator("[data-mark=trouble]").wait_for()
+        assert "steps" in page.locator("[data-mark=trouble]").inner_text()
+        page.close()
+    finally:
+        studio.end()
+
+
+def test_without_the_token_the_door_is_shut(chromium, studio):
+    page = chromium.new_page()
+    for _ in range(60):
+        try:
+            answer = page.goto(studio.address.split("?")[0])
+            break
+        except Exception:  # noqa: BLE001 - the server is about to listen
+            time.sleep(0.25)
+    assert answer.status == 403
+    page.close()
+
+
+def test_a_port_in_use_is_named(path):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        studio = Studio(path, "--port", str(port))
+        studio.process.wait(timeout=30)
+    said = studio.said + studio.process.stdout.read()
+    assert studio.process.returncode == 2
+    assert str(port) in said
+    assert "leave it out" in said
+    assert "Traceback" not in said
+
+
+def test_a_project_that_cannot_be_read_is_named(tmp_path):
+    studio = Studio(tmp_path / "nowhere.toml")
+    studio.process.wait(timeout=30)
+    assert studio.process.returncode == 2
+    assert "nowhere.toml" in studio.said

@@ -1,0 +1,232 @@
+"""A session without a browser: solves, undo, the file on disk, what goes wrong."""
+
+import asyncio
+import json
+from contextlib import asynccontextmanager, suppress
+
+import numpy as np
+import pytest
+
+import gridshell as gs
+from fabrication.errors import OutputError
+from fabrication.package import run
+from fabrication.project import read_project
+from fabrication.studio import session as module
+from fabrication.studio.readings import built_readings, net_readings
+from fabrication.studio.session import Change, Session
+
+
+@asynccontextmanager
+async def working(path):
+    session = Session(path)
+    task = asyncio.create_task(session.work())
+    try:
+        await until(lambda: session.up_to_date)
+        yield session
+    finally:
+        task.cancel()
+        with suppress(asyncio.CancelledError):
+            await task
+
+
+async def until(true, seconds=30.0):
+    async with asyncio.timeout(seconds):
+        while not true():
+            await asyncio.sleep(0.01)
+
+
+def test_a_slider_finds_the_net_that_run_finds(path, tmp_path):
+    async def turn():
+        async with working(path) as session:
+            for angle in (71.0, 66.0, 62.0):
+                session.change("net.angle", angle, done=False)
+                await asyncio.sleep(0.02)
+            session.change("net.angle", 62.0, done=True)
+            await until(lambda: session.up_to_date)
+            session.save()
+            return session
+
+    session = asyncio.run(turn())
+    report = run(read_project(path), tmp_path / "out")
+    alone = gs.read_net(tmp_path / "out" / "net.json")
+    np.testing.assert_allclose(session.net.result.control.vertices, alone.vertices, atol=1e-9)
+    told = {reading.key: reading.value for reading in net_readings(session.net)}
+    low, high = (report["net"]["node_angle_deg"][end] for end in ("min", "max"))
+    assert told["node_angle_deg"] == f"{low:.2f} to {high:.2f}°"
+    built = {reading.key: reading.value for reading in built_readings(session.built)}
+    assert built["lamellas"] == str(report["structure"]["lamellas"])
+    assert built["total_length_m"] == f"{report['structure']['total_length_m']:.1f} m"
+
+
+def test_only_the_end_of_a_drag_is_remembered(path):
+    async def turn():
+        async with working(path) as session:
+            for angle in (71.0, 72.0, 73.0):
+                session.change("net.angle", angle, done=False)
+            session.change("net.angle", 73.0, done=True)
+            session.change("profile.width", 90.0, done=True)
+            assert len(session.history.past) == 2
+            session.undo()
+            assert session.present.value("profile.width") == 80.0
+            session.undo()
+            assert session.present.value("net.angle") == 70.0
+            session.redo()
+            await until(lambda: session.up_to_date)
+            assert np.degrees(gs.node_angles(session.net.result.control)).max() == pytest.approx(73)
+
+    asyncio.run(turn())
+
+
+def test_a_solve_that_fails_says_why_and_leaves_the_net_before(path):
+    async def turn():
+        async with working(path) as session:
+            before = session.net
+            session.change("net.steps", 1, done=True)
+            await until(lambda: session.trouble)
+            assert "Not converged" in session.trouble or "step" in session.trouble
+            assert session.net is before
+            assert session.busy is None
+            assert not session.up_to_date
+            session.undo()
+            assert session.trouble == ""
+            await until(lambda: session.up_to_date)
+
+    asyncio.run(turn())
+
+
+def test_a_value_out_of_its_limits_changes_nothing(path):
+    async def turn():
+        async with working(path) as session:
+            session.change("net.angle", 190.0, done=True)
+            assert "net.angle" in session.trouble
+            assert session.present.value("net.angle") == 70.0
+            assert session.up_to_date
+
+    asyncio.run(turn())
+
+
+def test_a_fault_of_the_program_does_not_end_the_session(path, monkeypatch):
+    async def turn():
+        async with working(path) as session:
+            with monkeypatch.context() as broken:
+                broken.setattr(module, "find_net", lambda *a, **k: 1 / 0)
+                session.change("net.angle", 65.0, done=True)
+                await until(lambda: session.trouble)
+                assert "fault of the program" in session.trouble
+            session.change("net.angle", 66.0, done=True)
+            await until(lambda: session.up_to_date)
+
+    asyncio.run(turn())
+
+
+def test_what_another_program_wrote_is_noticed_loaded_and_undone(path, monkeypatch, text):
+    monkeypatch.setattr(module, "_LOOK", 0.05)
+
+    async def turn():
+        async with working(path) as session:
+            told = []
+            session.listen(told.append)
+            path.write_text(text.replace("70.0", "64.0"))
+            await until(lambda: session.differs_on_disk)
+            assert Change.DISK in told
+            session.change("net.angle", 75.0, done=True)
+            session.save()
+            assert "another program" in session.trouble
+            assert "64.0" in path.read_text()
+            session.load()
+            assert session.present.value("net.angle") == 64.0
+            assert not session.differs_on_disk
+            session.undo()
+            assert session.present.value("net.angle") == 75.0
+
+    asyncio.run(turn())
+
+
+def test_one_may_keep_what_is_shown(path, monkeypatch, text):
+    monkeypatch.setattr(module, "_LOOK", 0.05)
+
+    async def turn():
+        async with working(path) as session:
+            session.change("net.angle", 75.0, done=True)
+            path.write_text(text.replace("width = 80.0", "width = 85.0"))
+            await until(lambda: session.differs_on_disk)
+            session.keep()
+            session.save()
+            assert session.trouble == ""
+            document = read_project(path)
+            assert (document.net.angle, document.profile.width) == (75.0, 80.0)
+
+    asyncio.run(turn())
+
+
+def test_a_broken_file_on_disk_is_told_and_loses_nothing(path):
+    async def turn():
+        async with working(path) as session:
+            path.write_text("name = ")
+            session.load()
+            assert "not TOML" in session.trouble
+            assert session.present.value("net.angle") == 70.0
+
+    asyncio.run(turn())
+
+
+def test_two_sessions_on_one_project_do_not_overwrite_each_other(path):
+    async def turn():
+        async with working(path) as one, working(path) as other:
+            one.change("net.angle", 61.0, done=True)
+            one.save()
+            other.change("net.angle", 62.0, done=True)
+            other.save()
+            assert "another program" in other.trouble
+            assert read_project(path).net.angle == 61.0
+
+    asyncio.run(turn())
+
+
+def test_a_project_that_names_files_elsewhere_is_refused(path, text):
+    text = text.replace(text[text.index("[surface]") : text.index("[net]")], "")
+    text += '\n[mesh]\nfile = "../net.obj"\nunit = "mm"\nlamellas_along = "edges"\n'
+    path.write_text(text)
+    with pytest.raises(gs.SettingError, match=r"mesh\.file = '\.\./net\.obj'"):
+        Session(path)
+
+
+def test_the_package_is_what_run_writes(path, tmp_path, text):
+    async def turn():
+        async with working(path) as session:
+            session.change("net.angle", 62.0, done=True)
+            assert await session.write_package("package")
+            assert "package/" in session.note
+            await until(lambda: session.up_to_date)
+
+    asyncio.run(turn())
+    written = json.loads((path.parent / "package" / "report.json").read_text())
+    assert written["net"]["node_angle_deg"]["max"] == pytest.approx(62.0)
+    assert (path.parent / "package" / "structure.step").exists()
+    assert path.read_text() == text
+
+
+@pytest.mark.parametrize("name", ["", "..", "../out", "/tmp/out", "a/b", ".hidden"])
+def test_a_package_stays_in_the_folder(path, name):
+    async def turn():
+        async with working(path) as session:
+            assert not await session.write_package(name)
+            assert "beside the project" in session.trouble
+
+    asyncio.run(turn())
+
+
+def test_a_package_that_fails_leaves_nothing(path, monkeypatch):
+    def failing(*args, **kwargs):
+        raise OutputError("The disk is full", where="package")
+
+    monkeypatch.setattr(module, "run", failing)
+
+    async def turn():
+        async with working(path) as session:
+            assert not await session.write_package("package")
+            assert "disk is full" in session.trouble
+            assert session.busy is None
+
+    asyncio.run(turn())
+    assert not (path.parent / "package").exists()
