@@ -36,7 +36,7 @@ def histogram(
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="histogram" '
         f'viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" aria-label="{escape(title)}" '
-        f'font-family="system-ui, sans-serif" font-size="10.5">{body}</svg>'
+        f'font-family="system-ui, sans-serif">{body}</svg>'
     )
 
 
@@ -84,9 +84,8 @@ def _elements(bars: Bars, title: str, unit: str) -> Iterator[str]:
     right, foot = _WIDTH - _RIGHT, _HEIGHT - _BOTTOM
     x = _LEFT + (bars.stops - bars.low) / (bars.high - bars.low) * (right - _LEFT)
     per_count = (foot - _TOP) / float(bars.heights[-1])
-    bold = f'font-size="12.5" font-weight="600" fill="{_INK}"'
-    yield f'<text x="0" y="12" {bold}>{escape(title)}</text>'
-    yield f'<text x="0" y="27" fill="{_QUIET}">{escape(summary(bars, unit))}</text>'
+    yield _text(0.0, 12.0, title, "start", f"font-size:12.5px;font-weight:600;fill:{_INK}")
+    yield _text(0.0, 27.0, summary(bars, unit), "start")
     for height in bars.heights.tolist():
         y = foot - height * per_count
         yield f'<path d="M{_LEFT:g} {y:.1f}H{right:g}" stroke="{_LINE}" stroke-width="1"/>'
@@ -117,14 +116,14 @@ def _limit(at: float, foot: float, words: str) -> Iterator[str]:
         f'stroke-width="1.4" stroke-dasharray="4 3"/>'
     )
     place = min(max(at, _LEFT), _WIDTH - _LETTER * len(words) / 2.0)
-    yield (
-        f'<text x="{place:.1f}" y="{_TOP - 8.0:g}" text-anchor="middle" fill="{_LIMIT}">'
-        f"{escape(words)}</text>"
-    )
+    yield _text(place, _TOP - 8.0, words, "middle", f"font-size:10.5px;fill:{_LIMIT}")
 
 
-def _text(x: float, y: float, text: str, anchor: str) -> str:
+def _text(
+    x: float, y: float, text: str, anchor: str, style: str = f"font-size:10.5px;fill:{_QUIET}"
+) -> str:
+    """A line of text; its style is its own, whatever the page says of text in pictures."""
     return (
-        f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{_QUIET}">'
+        f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" style="{style}">'
         f"{escape(text)}</text>"
     )
