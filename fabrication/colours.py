@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-FAMILY_COLOURS = {1: (0.80, 0.52, 0.25), 2: (0.36, 0.47, 0.58)}
-"""sRGB, 0 to 1."""
+from gridshell.picture import FAMILY_COLOURS
+
+__all__ = ["FAMILY_COLOURS", "css"]
 
 
 def css(colour: tuple[float, float, float], shade: float = 1.0) -> str:

@@ -19,10 +19,12 @@ from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicSpline
 
 from gridshell.arrays import Floats, Indices, Points, Vectors, frozen, unit
+from gridshell.picture import FAMILY_COLOURS, card, sketch, straight
 
 _GAUSS_X, _GAUSS_W = leggauss(8)
 _REPARAMETRISATIONS = 12
 _SAMPLES_PER_BAY = 8
+_PER_BAY_SHOWN = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,6 +205,33 @@ class Lamella:
         return (
             np.einsum("nc,nc->n", second, f.b) / speed,
             np.einsum("nc,nc->n", second, f.n) / speed,
+        )
+
+    def _repr_html_(self) -> str:
+        """For notebooks: its axis, and the direction of its width at the nodes."""
+        s = np.linspace(self.start, self.end, _PER_BAY_SHOWN * max(len(self.stations), 2))
+        axis, nodes = self.frames(s), self.frames(self.stations)
+        up = self.length / 40.0 * nodes.n
+        points = np.concatenate([axis.points, nodes.points - up, nodes.points + up])
+        first = np.arange(len(s) - 1)
+        ticks = len(s) + np.arange(len(nodes.points))
+        lines = [
+            straight(
+                points, np.stack([first, first + 1], axis=1), FAMILY_COLOURS[self.family], 2.0
+            ),
+            straight(points, np.stack([ticks, ticks + len(ticks)], axis=1)),
+        ]
+        bend = float(np.abs(self.bending(s)[0]).max())
+        return card(
+            f"Lamella {self.mark}",
+            [
+                ("Family", "AB"[self.family - 1]),
+                ("Length", f"{self.length:.1f} mm{', closed' if self.closed else ''}"),
+                ("Nodes", f"{len(self.nodes)}"),
+                ("Smallest bending radius", f"{1e-3 / bend:.2f} m" if bend > 1e-9 else "straight"),
+                ("Largest twist", f"{np.degrees(np.abs(self.twist(s)).max()) * 1e3:.1f} degrees/m"),
+            ],
+            picture=sketch(lines, label=f"The axis of lamella {self.mark}"),
         )
 
 

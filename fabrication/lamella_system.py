@@ -11,6 +11,7 @@ import gridshell as gs
 from fabrication.assembling import Assembly
 from fabrication.errors import KernelError
 from fabrication.export.interchange.model import Model, lamella_model
+from fabrication.export.quality_series import Series
 from fabrication.export.step_prism_reader import StepCopy, StepPrism
 from fabrication.export.step_reader import StepPart
 from fabrication.exporting import write_exports
@@ -183,6 +184,22 @@ class LamellaSystem:
             pictures=pictures,
             copies=() if self.segmented is None else self.segmented.segments.poses[1:],
             moving=None if self.moving is None else (self.moving.motion, self.moving.opening),
+        )
+
+    def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:
+        """The same to print."""
+        from fabrication.export.papers.lamella_paper import write_lamella_paper
+
+        write_lamella_paper(
+            path,
+            name=self.project.name,
+            report=report,
+            series=series,
+            jointed=self.jointed,
+            parts=self.parts,
+            stress=self.stress,
+            sheets=self.sheets[0].sheets,
+            copies=() if self.segmented is None else self.segmented.segments.poses[1:],
         )
 
     # ---- files ---------------------------------------------------------------------------------

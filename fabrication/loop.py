@@ -23,8 +23,9 @@ from fabrication.export.step_loops import landmarks
 from fabrication.export.step_prism_reader import StepPrism, read_prisms
 from fabrication.export.step_reader import StepPart, read_step
 from fabrication.jointed import Feature, Fixture, Jointed
-from fabrication.parts import FlatPart, hollow_area
+from fabrication.parts import FlatPart
 from fabrication.shapes import Prisms
+from fabrication.stock import hollow_area
 from gridshell import FileError
 from gridshell.arrays import Floats
 

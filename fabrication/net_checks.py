@@ -26,8 +26,7 @@ def _off_surface(result: gs.OptimizedNet, quality: gs.NetQuality, *, kept: bool)
     distance = quality.surface_distance_mm
     if not kept or distance is None:
         return []
-    points = result.control.vertices[result.control.mesh.valence > 0]
-    limit = OFF_SURFACE_LIMIT * float(np.linalg.norm(np.ptp(points, axis=0)))
+    limit = off_surface_limit(result.control)
     if distance.max <= limit:
         return []
     return [
@@ -43,6 +42,12 @@ def _off_surface(result: gs.OptimizedNet, quality: gs.NetQuality, *, kept: bool)
             f"another surface, or set net.keep_to_surface = false and take the new form",
         )
     ]
+
+
+def off_surface_limit(control: gs.ControlMesh) -> float:
+    """Distance from the surface above which it is remarked, mm."""
+    points = control.vertices[control.mesh.valence > 0]
+    return OFF_SURFACE_LIMIT * float(np.linalg.norm(np.ptp(points, axis=0)))
 
 
 def _remarks(result: gs.OptimizedNet) -> list[Finding]:

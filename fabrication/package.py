@@ -17,12 +17,13 @@ import numpy as np
 
 import gridshell as gs
 from fabrication.delivery import draft_folder, move_in
+from fabrication.export.quality_series import Series, net_series
 from fabrication.exporting import FORMATS, require_formats
 from fabrication.finding import Finding
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.lamella_route import LamellaRoute
 from fabrication.moulds import moulds
-from fabrication.net_checks import check_net
+from fabrication.net_checks import check_net, off_surface_limit
 from fabrication.panel_route import PanelRoute
 from fabrication.placing import keyed
 from fabrication.remesh_job import Remeshed
@@ -30,7 +31,10 @@ from fabrication.routes import Announce, Clock, Report, Route, System
 from fabrication.sections import NetSection, Project
 from fabrication.starts import Start, start
 
-FILES = ("net.json", "net.obj", "parts.csv", "report.html", "report.json", "structure.step")
+FILES = (
+    *("net.json", "net.obj", "parts.csv", "structure.step"),
+    *("report.html", "report.json", "report.pdf"),
+)
 """What every run makes, besides ``sheets/*.dxf``."""
 
 _SHEETS = (
@@ -62,6 +66,7 @@ class _Design:
     control: gs.ControlMesh
     system: System
     net: Report
+    series: Sequence[Series]
     findings: Sequence[Finding]
     remeshed: Remeshed | None
 
@@ -148,12 +153,14 @@ def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Desi
         result, quality = net.result, net.quality
     system = route.build(result.control, clock)
     about_net = check_net(result, quality, kept=project.net.keep_to_surface)
+    limit = off_surface_limit(result.control) if project.net.keep_to_surface else None
     laid = () if begun.remeshed is None else begun.remeshed.findings
     seconds = clock.seconds["optimise"]
     return _Design(
         control=result.control,
         system=system,
         net=gs.net_report(result, route.planarity, seconds=seconds, quality=quality),
+        series=net_series(quality.figures, surface_limit=limit),
         findings=[*laid, *about_net, *system.findings],
         remeshed=begun.remeshed,
     )
@@ -188,8 +195,7 @@ def net_of(
     """
     recipe = route.recipe(folder)
     result = _found(optimised(project, recipe, begun, progress), begun)
-    away = gs.surface_distance(result.control, begun.surface)
-    quality = replace(result.quality, surface_distance_mm=away)
+    quality = gs.measured_against(result.quality, result.control, begun.surface)
     if project.umbrella is not None:  # D2 only fills it: its quads have no node angle
         angles = np.degrees(gs.umbrella_of(result.control).node_angles)
         quality = replace(quality, node_angle_deg=(float(angles.min()), float(angles.max())))
@@ -274,6 +280,7 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
     }
     with clock.stage("report"):
         design.system.write_page(draft / "report.html", report, _pictures(design))
+        design.system.write_paper(draft / "report.pdf", report, design.series)
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")
     return report

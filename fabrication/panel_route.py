@@ -14,6 +14,7 @@ from fabrication.beam_layout import Beam, BeamSection, beams
 from fabrication.bodies import structure_bodies
 from fabrication.errors import KernelError
 from fabrication.export.interchange.model import bodies_model
+from fabrication.export.quality_series import Series
 from fabrication.exporting import write_exports
 from fabrication.finding import Finding
 from fabrication.grouping import group_names
@@ -178,6 +179,21 @@ class PanelNetSystem:
             plate_sheets=self.plate_sheets,
             star_sheets=self.star_sheets,
             pictures=pictures,
+        )
+
+    def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:
+        """The same to print."""
+        from fabrication.export.papers.panel_paper import write_panel_paper
+
+        write_panel_paper(
+            path,
+            name=self.project.name,
+            report=report,
+            series=series,
+            built=self.built,
+            panel_sheets=self.panel_sheets,
+            plate_sheets=self.plate_sheets,
+            star_sheets=self.star_sheets,
         )
 
     def _solids(self, cad: Kernel) -> KernelResult:

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from fabrication.connector import Connector, ConnectorSpec, connector_findings, connectors
 from fabrication.connector_pieces import ConnectorPiece, StarSpec, connector_pieces
 from fabrication.finding import Finding
@@ -25,10 +27,14 @@ from fabrication.support import (
     supports,
 )
 from gridshell import PanelMesh, averaged_normals
+from gridshell.painter import Faces, padded, painted
+from gridshell.picture import card, limits, size, sketch
 
 SAME = 1e-3
 """Parts whose corners agree this well are one shape in the STEP file, mm."""
 
+_MOST_SHOWN = 1_500
+"""Panels, and plates, in a picture for notebooks."""
 
 COLOURS = {
     "panels": (0.62, 0.78, 0.88),
@@ -119,6 +125,12 @@ class PanelStructure:
         twisted = () if section is None else support_findings(self.plates, section)
         return [*twisted, *connector_findings(self.connectors)]
 
+    def _repr_html_(self) -> str:
+        """For notebooks: the panels, and plates below where they are to be seen."""
+        layers, notes = _shown(self)
+        picture = sketch(layers, label="Panels on a planar net")
+        return card("Panel structure", _figures(self), picture=picture, notes=notes)
+
 
 def panelled(mesh: PanelMesh, system: PanelSystem) -> PanelStructure:
     """Build *system* on *mesh*.
@@ -147,3 +159,38 @@ def connector_middle(system: PanelSystem) -> float:
     """Place of the connectors' middle along the axes, mm from the net."""
     plates = system.plates
     return 0.0 if plates is None else (plates.below + plates.above) / 2.0
+
+
+# ---- for notebooks -------------------------------------------------------------------------------
+
+
+def _figures(built: PanelStructure) -> list[tuple[str, str]]:
+    spec, pieces = built.system.panels, built.pieces
+    masses = (
+        *(panel.mass for panel in built.panels),
+        *(plate.mass for plate in built.plates),
+        *(built.piece_mass(piece) for piece in pieces),
+    )
+    corners = np.concatenate([np.zeros(0), *(panel.corner_angles for panel in built.panels)])
+    return [
+        ("Panels", f"{len(built.panels)} of {spec.thickness:g} mm, {spec.material.name}"),
+        ("Support plates", f"{len(built.plates)}" if built.plates else ""),
+        ("Connectors", f"{len(built.connectors)}" if built.connectors else ""),
+        ("Spans", size(built.mesh.vertices)),
+        ("Area of panels", f"{sum(panel.area for panel in built.panels) / 1e6:.2f} m2"),
+        ("Corners", limits(np.degrees(corners), "degrees", 1)),
+        ("Mass", f"{sum(masses):.1f} kg"),
+    ]
+
+
+def _shown(built: PanelStructure) -> tuple[tuple[Faces, ...], tuple[str, ...]]:
+    """Panels and plates as polygons in their colours."""
+    layers = tuple(
+        Faces(found, painted(COLOURS[kind], len(found)))
+        for kind, found in (
+            ("plates", padded([plate.in_space() for plate in built.plates[:_MOST_SHOWN]])),
+            ("panels", padded([panel.in_space() for panel in built.panels[:_MOST_SHOWN]])),
+        )
+    )
+    many = max(len(built.panels), len(built.plates)) > _MOST_SHOWN
+    return layers, (f"The first {_MOST_SHOWN} panels and plates are drawn.",) if many else ()

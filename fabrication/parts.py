@@ -22,11 +22,12 @@ from fabrication.cut import (
 )
 from fabrication.jointed import Jointed
 from fabrication.joints import Joint
-from fabrication.stock import wall_of
+from fabrication.stock import hollow_area, wall_of
 from fabrication.structures import Structure
 from fabrication.unroll import Development, unroll
 from gridshell import SettingError
 from gridshell.arrays import Floats
+from gridshell.picture import card, limits
 
 LETTER = 0.9
 """Width of a letter over its height."""
@@ -108,10 +109,16 @@ class FlatPart:
         bevelled = sum(abs(run) for run in self.bevels) * self.width / 2.0
         return (self.area - bevelled) * self.thickness
 
+    def _repr_html_(self) -> str:
+        """For notebooks: the flat pattern; families are told apart by the mark."""
+        from fabrication.export.strip_picture import strip_svg
 
-def hollow_area(width: float, thickness: float, wall: float) -> float:
-    """Section of a tube, mm2."""
-    return width * thickness - (width - 2.0 * wall) * (thickness - 2.0 * wall)
+        return card(
+            f"Strip {self.mark}",
+            _figures(self),
+            picture=strip_svg(self, 2 if self.mark.startswith("B") else 1),
+            width=1100,
+        )
 
 
 def flat_parts(structure: Structure, joint: Joint) -> tuple[FlatPart, ...]:
@@ -207,6 +214,23 @@ def _require_whole(mark: str, cuts: Cuts, wall: float) -> None:
             limit="hinges for hollow sections, all other joints for solid strips",
             advice="kind = 'hinged' with a wall, or no wall",
         )
+
+
+def _figures(part: FlatPart) -> list[tuple[str, str]]:
+    """What a person wants to know of a strip, as text; empty where there is none."""
+    widths = np.array([slot.width for slot in part.slots])
+    cuts = (("slot", len(part.slots)), ("hole", len(part.holes)), ("drilling", len(part.drills)))
+    bevels = " and ".join(f"{run:.2f}" for run in part.bevels)
+    wall = f", wall {part.wall:g}" if part.wall else ""
+    return [
+        ("Length", f"{part.length:.1f} mm"),
+        ("Section", f"{part.width:g} x {part.thickness:g} mm{wall}"),
+        *((f"{name.capitalize()}s", f"{count}" if count else "") for name, count in cuts),
+        ("Slot width", limits(widths, "mm")),
+        ("Near face longer by", f"{bevels} mm" if any(part.bevels) else ""),
+        ("Volume", f"{part.volume / 1e3:.1f} cm3"),
+        ("Built", f"{part.quantity} times" if part.quantity > 1 else ""),
+    ]
 
 
 def _labels(

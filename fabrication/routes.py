@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import gridshell as gs
+from fabrication.export.quality_series import Series
 from fabrication.finding import Finding, Severity
 from fabrication.kernel_job import Kernel
 
@@ -74,6 +75,9 @@ class System(Protocol):
 
     def write_page(self, path: Path, report: Report, pictures: Sequence[Report]) -> None:
         """Write ``report.html``."""
+
+    def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:
+        """Write ``report.pdf``; *series* are the figures of the net."""
 
 
 class Route(Protocol):

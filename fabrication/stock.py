@@ -104,6 +104,19 @@ def wall_of(profile: Profile) -> float:
     return profile.wall if isinstance(profile, HollowProfile) else 0.0
 
 
+def hollow_area(width: float, thickness: float, wall: float) -> float:
+    """Section of a tube, mm2."""
+    return width * thickness - (width - 2.0 * wall) * (thickness - 2.0 * wall)
+
+
+def section_area(profile: Profile) -> float:
+    """Of a strip or a tube before it is cut, mm2."""
+    wall = wall_of(profile)
+    if wall:
+        return hollow_area(profile.width, profile.thickness, wall)
+    return profile.width * profile.thickness
+
+
 def require_web(profile: Profile, depth_clearance: float) -> None:
     """Refuse slots, half the strip's width and *depth_clearance* mm deep, that cut it through.
 

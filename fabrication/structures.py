@@ -17,12 +17,18 @@ from scipy.interpolate import CubicSpline
 
 from fabrication.lamella import AxisCurve, Lamella, axis_curve
 from fabrication.node import Crossing, Node, node_angles
-from fabrication.stock import Profile
+from fabrication.ribbons import ribbons
+from fabrication.stock import Profile, section_area
 from gridshell import DiagonalMesh, Polyline, SettingError, polylines
 from gridshell.arrays import Floats, Mask, Vectors, unit
+from gridshell.painter import Faces
+from gridshell.picture import card, limits, size, sketch
 
 SEAM = 1.0
 """Gap left between the two ends of a closed lamella, mm."""
+
+_MOST_BAYS = 3_000
+"""Quads of strips in a picture for notebooks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +45,12 @@ class Structure:
     lamellas: tuple[Lamella, ...]
     nodes: tuple[Node, ...]
     profile: Profile
+
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        layers, notes = _shown(self)
+        picture = sketch(layers, label="Strips, bent and twisted")
+        return card("Structure", _figures(self), picture=picture, notes=notes)
 
 
 def structure(net: DiagonalMesh, profile: Profile, *, overhang: float | None = None) -> Structure:
@@ -216,3 +228,32 @@ def _axis(axis: Floats, crossings: list[Crossing], lamellas: tuple[Lamella, ...]
         return axis
     (alone,) = crossings
     return np.asarray(lamellas[alone.lamella].frames(np.array([alone.station])).n[0])
+
+
+# ---- for notebooks -------------------------------------------------------------------------------
+
+
+def _figures(built: Structure) -> list[tuple[str, str]]:
+    profile, lengths = built.profile, np.array([one.length for one in built.lamellas])
+    counts = " + ".join(str(sum(one.family == f for one in built.lamellas)) for f in (1, 2))
+    angles = np.array([node.angle for node in built.nodes if node.angle is not None], dtype=float)
+    mass = lengths.sum() * section_area(profile) * profile.material.density * 1e-9
+    return [
+        ("Lamellas A, B", counts),
+        ("Nodes", f"{len(built.nodes)}"),
+        ("Node angle", limits(np.degrees(angles), "degrees")),
+        ("Spans", size(np.array([node.position for node in built.nodes]).reshape(-1, 3))),
+        ("Section", f"{profile.size} mm, {profile.material.name}"),
+        ("Lengths", limits(lengths / 1e3, "m", 3)),
+        ("In all", f"{lengths.sum() / 1e3:.1f} m, {mass:.1f} kg before cutting"),
+    ]
+
+
+def _shown(built: Structure) -> tuple[tuple[Faces, ...], tuple[str, ...]]:
+    """All strips as ribbons, coarser where they are many; of very many every so many."""
+    bays = sum(len(one.stations) for one in built.lamellas)
+    step = -(-bays // _MOST_BAYS) or 1
+    per_bay = 2 if 2 * bays <= _MOST_BAYS else 1
+    faces = ribbons(built.lamellas[::step], built.profile.width, per_bay=per_bay)
+    notes = () if step == 1 else (f"One strip of {step} is drawn.",)
+    return faces, notes

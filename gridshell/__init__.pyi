@@ -197,6 +197,7 @@ from .quad_figures import (
 from .quad_figures import (
     quad_figures as quad_figures,
 )
+from .quality import NetFigures as NetFigures
 from .quality import (
     NetQuality as NetQuality,
 )
@@ -204,13 +205,14 @@ from .quality import (
     Spread as Spread,
 )
 from .quality import (
+    measured_against as measured_against,
+)
+from .quality import net_figures as net_figures
+from .quality import (
     net_quality as net_quality,
 )
 from .quality import (
     node_angles as node_angles,
-)
-from .quality import (
-    surface_distance as surface_distance,
 )
 from .recipes import (
     NetRecipe as NetRecipe,

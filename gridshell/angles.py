@@ -66,11 +66,3 @@ def angles_at(angle: Angle, points: Points) -> Floats:
             advice="60, 75 or 90 degrees",
         )
     return values
-
-
-def crossing_angles(vertices: Points, crossings: Indices) -> Floats:
-    """(m,) angle from direction c - a to direction d - b, radians."""
-    corners = vertices[crossings]
-    a, b = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
-    across, along = np.linalg.norm(np.cross(a, b), axis=1), np.einsum("mc,mc->m", a, b)
-    return np.asarray(np.arctan2(across, along))

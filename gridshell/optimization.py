@@ -8,6 +8,7 @@ from gridshell.anchors import Anchor
 from gridshell.arrays import Points
 from gridshell.errors import SolveError
 from gridshell.mesh import ControlMesh
+from gridshell.picture import card, sketch
 from gridshell.pose import pose
 from gridshell.quality import NetQuality, net_quality
 from gridshell.recipes import Recipe
@@ -65,6 +66,24 @@ class OptimizedNet:
         if self.verdict is not None:
             lines.append(self.verdict.message)
         return "\n".join([*lines, *self.remarks])
+
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        from gridshell.mesh.showing import control_figures, control_layers
+
+        layers, notes = control_layers(self.control)
+        verdict = () if self.verdict is None else (self.verdict.message,)
+        return card(
+            "Optimised net" if self.converged else "Optimised net, not converged",
+            [
+                ("Status", self.status),
+                ("Steps", f"{len(self.steps)}"),
+                *control_figures(self.control),
+                *_figures(self.quality),
+            ],
+            picture=sketch(layers, label="The net after its last step"),
+            notes=(*verdict, *self.remarks, *notes),
+        )
 
 
 def optimize(
@@ -126,3 +145,23 @@ def optimize(
         solution.state,
         solution.memory,
     )
+
+
+def _figures(quality: NetQuality) -> list[tuple[str, str]]:
+    """What should be nought, the largest of each; those that were not asked for are empty."""
+    spreads = (
+        ("Star planarity", quality.star_planarity, ""),
+        ("Face planarity", quality.face_planarity, ""),
+        ("Sphericity", quality.sphericity, ""),
+        ("Angle error", quality.angle_error_deg, " degrees"),
+        ("Rhombus error", quality.rhombus_error, ""),
+        ("Distance to surface", quality.surface_distance_mm, " mm"),
+    )
+    low, high = quality.edge_ratio
+    return [
+        *(
+            (f"{name}, largest", "" if spread is None else f"{spread.max:.3g}{unit}")
+            for name, spread, unit in spreads
+        ),
+        ("Edges over their mean", f"{low:.2f} to {high:.2f}"),
+    ]

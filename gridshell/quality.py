@@ -10,11 +10,11 @@ over the star's mean edge.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gridshell.angles import Angle, crossing_angles
+from gridshell.angles import Angle
 from gridshell.arrays import Floats, Indices
 from gridshell.constraints import spherical_stars
 from gridshell.curvature import principal_curvatures
@@ -23,6 +23,7 @@ from gridshell.mesh import (
     ControlMesh,
     DiagonalMesh,
     Stars,
+    crossing_angles,
     diagonal_meshes,
     diagonal_stars,
     edge_stars,
@@ -40,6 +41,33 @@ class Spread:
 
     mean: float
     max: float
+
+
+@dataclass(frozen=True, eq=False)
+class NetFigures:
+    """The figures of a net element by element; what was not asked for is None.
+
+    Parameters
+    ----------
+    star_planarity : (s,) of every star that shall be planar.
+    face_planarity : (f,) of every face that shall be planar.
+    sphericity : (s,) of every star of four that shall be spherical.
+    node_angle_deg, angle_error_deg : (m,) at every crossing.
+    rhombus_error : (f,) of every control quad.
+    edge_ratio : (e,) length of every edge of the net over their mean.
+    corner_angle_deg : (4 f,) corners of the quads.
+    surface_distance_mm : (n,) of the vertices in use.
+    """
+
+    star_planarity: Floats | None
+    face_planarity: Floats | None
+    sphericity: Floats | None
+    node_angle_deg: Floats
+    angle_error_deg: Floats | None
+    rhombus_error: Floats | None
+    edge_ratio: Floats
+    corner_angle_deg: Floats
+    surface_distance_mm: Floats | None
 
 
 @dataclass(frozen=True)
@@ -62,6 +90,7 @@ class NetQuality:
     surface_distance_mm : None without a reference.
     curvature_ratio : median of kappa1 / kappa2 estimated from the mesh alone; for an A-net of
         constant angle it is ``-tan(angle / 2)^2``. None where the mesh is too small to tell.
+    figures : what all of these are read off, element by element.
     """
 
     star_planarity: Spread | None
@@ -75,6 +104,7 @@ class NetQuality:
     collapsed: int
     surface_distance_mm: Spread | None
     curvature_ratio: float | None
+    figures: NetFigures = field(repr=False, compare=False)
 
 
 def net_quality(
@@ -86,25 +116,53 @@ def net_quality(
     reference: Surface | None = None,
 ) -> NetQuality:
     """Measure *control* by what it shall be; *angle* in radians, lengths in mm."""
+    found = net_figures(
+        control, planarity=planarity, angle=angle, rhombus=rhombus, reference=reference
+    )
+    return NetQuality(
+        star_planarity=_told(found.star_planarity),
+        face_planarity=_told(found.face_planarity),
+        sphericity=_told(found.sphericity),
+        angle_error_deg=_told(found.angle_error_deg),
+        node_angle_deg=_range(found.node_angle_deg),
+        rhombus_error=_told(found.rhombus_error),
+        edge_ratio=_range(found.edge_ratio),
+        corner_angle_deg=_range(found.corner_angle_deg),
+        collapsed=int(
+            np.count_nonzero(collapsed(control.vertices, control.quads, control.mesh.mean_edge))
+        ),
+        surface_distance_mm=_told(found.surface_distance_mm),
+        curvature_ratio=curvature_ratio(control),
+        figures=found,
+    )
+
+
+def net_figures(
+    control: ControlMesh,
+    *,
+    planarity: Planarity = Planarity.DIAGONAL_STARS,
+    angle: Angle | None = None,
+    rhombus: bool = False,
+    reference: Surface | None = None,
+) -> NetFigures:
+    """The same element by element."""
     vertices, quads = control.vertices, control.quads
     angles = crossing_angles(vertices, crossings(control, planarity))
     error = None
     if angle is not None:
-        error = _spread(np.degrees(np.abs(angles - target_angles(control, planarity, angle))))
-    return NetQuality(
-        star_planarity=_spread(star_planarity(vertices, planar_stars(control, planarity)))
+        error = np.degrees(np.abs(angles - target_angles(control, planarity, angle)))
+    return NetFigures(
+        star_planarity=star_planarity(vertices, planar_stars(control, planarity))
         if planarity.of_stars
         else None,
         face_planarity=_face_planarity(control, planarity),
         sphericity=_sphericity(control) if planarity is Planarity.SPHERICAL_STARS else None,
+        node_angle_deg=np.degrees(angles),
         angle_error_deg=error,
-        node_angle_deg=_range(np.degrees(angles)),
         rhombus_error=_rhombus_error(control) if rhombus else None,
         edge_ratio=_net_edges(control, planarity),
-        corner_angle_deg=_range(np.degrees(corner_angles(vertices, quads))),
-        collapsed=int(np.count_nonzero(collapsed(vertices, quads, control.mesh.mean_edge))),
-        surface_distance_mm=None if reference is None else surface_distance(control, reference),
-        curvature_ratio=curvature_ratio(control),
+        corner_angle_deg=np.degrees(corner_angles(vertices, quads)).ravel(),
+        surface_distance_mm=None if reference is None else _distances(control, reference),
     )
 
 
@@ -118,12 +176,12 @@ def quad_planarity(corners: Floats) -> Floats:
     return np.asarray(np.abs(offset) / area / mean)
 
 
-def _face_planarity(control: ControlMesh, planarity: Planarity) -> Spread | None:
+def _face_planarity(control: ControlMesh, planarity: Planarity) -> Floats | None:
     if planarity is Planarity.FACES:
-        return _spread(quad_planarity(control.vertices[control.quads]))
+        return quad_planarity(control.vertices[control.quads])
     if planarity is Planarity.WHITE_FACES:
         rings = _white_rings(edge_stars(control.mesh))
-        return _spread(np.concatenate([_ring_planarity(control.vertices[r]) for r in rings]))
+        return np.concatenate([_ring_planarity(control.vertices[r]) for r in rings])
     return None
 
 
@@ -143,26 +201,33 @@ def _ring_planarity(corners: Floats) -> Floats:
     return np.asarray(distance / (2.0 * np.linalg.norm(offset, axis=2).mean(axis=1)))
 
 
-def _sphericity(control: ControlMesh) -> Spread:
+def _sphericity(control: ControlMesh) -> Floats:
     constraint, x = spherical_stars(diagonal_stars(control.mesh)), control.vertices.ravel()
     offset = np.abs(constraint.evaluate(x, constraint.lag(x)).residual[:, 0])
     corners = control.vertices[constraint.points]
     spokes = np.linalg.norm(corners[:, 1:] - corners[:, :1], axis=2).mean(axis=1)
-    return _spread(offset / spokes)
+    return np.asarray(offset / spokes)
 
 
-def _rhombus_error(control: ControlMesh) -> Spread:
+def _rhombus_error(control: ControlMesh) -> Floats:
     corners = control.vertices[control.quads]
     length = np.linalg.norm(corners[:, 2:] - corners[:, :2], axis=2)
-    return _spread(np.abs(length[:, 0] - length[:, 1]) / length.mean(axis=1))
+    return np.asarray(np.abs(length[:, 0] - length[:, 1]) / length.mean(axis=1))
 
 
-def _net_edges(control: ControlMesh, planarity: Planarity) -> tuple[float, float]:
+def _net_edges(control: ControlMesh, planarity: Planarity) -> Floats:
     if planarity in (Planarity.EDGE_STARS, Planarity.FACES):
         length = control.mesh.edge_lengths
-        return float(length.min() / length.mean()), float(length.max() / length.mean())
+        return np.asarray(length / length.mean())
     second = planarity is Planarity.SECOND_DIAGONAL_STARS
-    return edge_ratio(diagonal_meshes(control)[int(second)])
+    return _edge_ratios(diagonal_meshes(control)[int(second)])
+
+
+def _edge_ratios(net: DiagonalMesh) -> Floats:
+    """(e,) lengths over their mean."""
+    a, b = net.vertices[net.edges.T]
+    length = np.linalg.norm(a - b, axis=1)
+    return np.asarray(length / length.mean())
 
 
 def _range(figures: Floats) -> tuple[float, float]:
@@ -188,9 +253,7 @@ def node_angles(control: ControlMesh) -> Floats:
 
 def edge_ratio(net: DiagonalMesh) -> tuple[float, float]:
     """Shortest and longest edge over the mean edge."""
-    a, b = net.vertices[net.edges.T]
-    length = np.linalg.norm(a - b, axis=1)
-    return float(length.min() / length.mean()), float(length.max() / length.mean())
+    return _range(_edge_ratios(net))
 
 
 def curvature_ratio(control: ControlMesh) -> float | None:
@@ -205,11 +268,22 @@ def curvature_ratio(control: ControlMesh) -> float | None:
     return float(np.median(small[:, 0] / np.where(small[:, 1] == 0.0, np.inf, small[:, 1])))
 
 
-def surface_distance(control: ControlMesh, reference: Surface) -> Spread:
-    """Distance of the vertices from *reference*, mm."""
+def measured_against(quality: NetQuality, control: ControlMesh, reference: Surface) -> NetQuality:
+    """*quality* of *control* with its distance from *reference*, kept to it or not."""
+    away = _distances(control, reference)
+    figures = replace(quality.figures, surface_distance_mm=away)
+    return replace(quality, surface_distance_mm=_spread(away), figures=figures)
+
+
+def _distances(control: ControlMesh, reference: Surface) -> Floats:
+    """(n,) of the vertices in use, mm."""
     points = control.vertices[control.mesh.valence > 0]
-    return _spread(np.linalg.norm(points - reference.closest(points).points, axis=1))
+    return np.asarray(np.linalg.norm(points - reference.closest(points).points, axis=1))
 
 
 def _spread(figures: Floats) -> Spread:
     return Spread(float(figures.mean()), float(figures.max())) if len(figures) else Spread(0.0, 0.0)
+
+
+def _told(figures: Floats | None) -> Spread | None:
+    return None if figures is None else _spread(figures)

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from fabrication.errors import OutputError
-from fabrication.export.painter import Dots, Layer, Lines, View, bounds, in_order
 from gridshell.arrays import Floats
+from gridshell.painter import Dots, Layer, Lines, View, bounds, in_order
 
 _FINER = 3
 """Pixels painted for each that is kept, either way."""

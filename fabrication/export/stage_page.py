@@ -12,10 +12,10 @@ from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from fabrication.export.painter import Dots, Faces, Layer, Lines, View, corners, hexadecimal
 from fabrication.export.stages import Stage
 from fabrication.export.words import fixed, number, plural
 from gridshell.arrays import Floats, Indices, Points
+from gridshell.painter import Dots, Faces, Layer, Lines, View, corners, hexadecimal
 
 _LIGHT = {"ambient": 0.9, "diffuse": 0.2, "specular": 0.03, "roughness": 0.9, "fresnel": 0.02}
 

@@ -17,9 +17,20 @@ import numpy as np
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
-from fabrication.export.painter import Dots, Faces, Layer, Lines, View, bounds, hexadecimal, svg
 from fabrication.export.words import plural
 from gridshell.arrays import Floats, Indices
+from gridshell.painter import (
+    Dots,
+    Faces,
+    Layer,
+    Lines,
+    View,
+    bounds,
+    hexadecimal,
+    painted,
+    polygons,
+    svg,
+)
 from gridshell.surface import TriangleMesh
 
 _TRIANGLES = 3_000
@@ -171,7 +182,7 @@ def _directions(made: gs.Quadrangulation, skin: _Skin) -> Stage:
     for family, along in ((1, field.first_directions), (2, field.second_directions)):
         reach = 0.42 * step * along[some]
         ends = np.stack([centres - reach, centres + reach], axis=1)
-        layers.append(Lines(ends, _all(FAMILY_COLOURS[family], len(some)), 1.6))
+        layers.append(Lines(ends, painted(FAMILY_COLOURS[family], len(some)), 1.6))
     low, middle, high = made.report.angle_deg
     return Stage(
         "b",
@@ -190,7 +201,7 @@ def _quads(made: gs.Quadrangulation, skin: _Skin) -> Stage:
         colour = gs.two_colouring(mesh)
         for number, paint in ((0, _RED), (1, _BLUE)):
             places = mesh.vertices[colour == number]
-            layers.append(Dots(places, _all(paint, len(places)), 2.3))
+            layers.append(Dots(places, painted(paint, len(places)), 2.3))
         legend = ((_css(_RED), "red vertices"), (_css(_BLUE), "blue vertices"))
     return Stage(
         "c",
@@ -224,7 +235,7 @@ def _alignment(made: gs.Quadrangulation, skin: _Skin) -> Stage:
     colours = heat(_edge_errors(made, ends.mean(axis=1)))
     layers.append(Lines(ends, colours, 2.0))
     spikes = np.array([spike.position for spike in report.singularities]).reshape(-1, 3)
-    layers.append(Dots(spikes, _all(_INK, len(spikes)), 5.0))
+    layers.append(Dots(spikes, painted(_INK, len(spikes)), 5.0))
     stray = report.alignment_deg
     infeasible = f"; {report.infeasible_area:.1%} of the area has no such pair"
     return Stage(
@@ -245,17 +256,15 @@ def _alignment(made: gs.Quadrangulation, skin: _Skin) -> Stage:
 
 def _net(net: gs.ControlMesh) -> Stage:
     pattern = gs.checkerboard(net)
-    rings = np.where(pattern.white >= 0, pattern.white, 0)
-    last = np.maximum.accumulate(np.where(pattern.white >= 0, np.arange(rings.shape[1]), 0), axis=1)
-    rings = np.take_along_axis(rings, last, axis=1)
-    black, white = pattern.vertices[pattern.black], pattern.vertices[rings]
+    black = pattern.vertices[pattern.black]
+    white = polygons(pattern.vertices, pattern.white)
     return Stage(
         "f",
         "Optimised net",
         f"{len(black)} black parallelograms, {len(white)} white faces.",
         (
-            Faces(white, _all((1.0, 1.0, 1.0), len(white))),
-            Faces(black, _all(_BLACK, len(black))),
+            Faces(white, painted((1.0, 1.0, 1.0), len(white))),
+            Faces(black, painted(_BLACK, len(black))),
             _edges(net.mesh, (0.55, 0.57, 0.60), 0.5),
         ),
         ((_css(_BLACK), "one in each quad of C"), (_css((1.0, 1.0, 1.0)), "halves of D1 and D2")),
@@ -320,24 +329,20 @@ def _skin(mesh: TriangleMesh) -> _Skin:
 
 
 def _pale(skin: _Skin) -> Faces:
-    return Faces(skin.corners, _all(_PALE, len(skin.corners)))
+    return Faces(skin.corners, painted(_PALE, len(skin.corners)))
 
 
 def _filled(mesh: gs.QuadMesh, skin: _Skin) -> Faces:
     """The quads of *mesh*, or the surface where they are too many."""
     if len(mesh.quads) > _MOST_FACES:
         return _pale(skin)
-    return Faces(mesh.vertices[mesh.quads], _all(_PALE, len(mesh.quads)))
+    return Faces(mesh.vertices[mesh.quads], painted(_PALE, len(mesh.quads)))
 
 
 def _edges(
     mesh: gs.QuadMesh, colour: tuple[float, float, float] = _INK, width: float = 1.3
 ) -> Lines:
-    return Lines(mesh.vertices[mesh.edges], _all(colour, len(mesh.edges)), width)
-
-
-def _all(colour: tuple[float, float, float], count: int) -> Floats:
-    return np.tile(np.array(colour), (count, 1))
+    return Lines(mesh.vertices[mesh.edges], painted(colour, len(mesh.edges)), width)
 
 
 def _css(colour: Any) -> str:

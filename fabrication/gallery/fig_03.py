@@ -8,11 +8,11 @@ import numpy as np
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.export.painter import Faces
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, average, largest
-from fabrication.gallery.scenery import BLUE, RED, edges, painted, polygons, seen_from
+from fabrication.gallery.scenery import BLUE, RED, edges
 from fabrication.gallery.starts import dome, triangles
+from gridshell.painter import Faces, painted, polygons, seen_from
 
 
 def figure() -> Figure:

@@ -7,13 +7,13 @@ from math import atan, degrees, radians, sqrt
 import numpy as np
 
 import gridshell as gs
-from fabrication.export.painter import Layer, Lines
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure
-from fabrication.gallery.scenery import BLUE, FROM_ABOVE, GREY, INK, RED, dots, edges, painted
+from fabrication.gallery.scenery import BLUE, FROM_ABOVE, GREY, INK, RED, dots, edges
 from gridshell.arrays import Floats
 from gridshell.field import conjugate_field
 from gridshell.mesh import grid_quads
+from gridshell.painter import Layer, Lines, painted
 from gridshell.surface import CurvedMesh, TriangleMesh
 
 CASES = {"K < 0": (-0.5, 1.0), "K = 0": (0.0, 1.0), "K > 0": (0.5, 1.0)}

@@ -9,8 +9,9 @@ import numpy as np
 import gridshell as gs
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, equal, largest
-from fabrication.gallery.scenery import pattern, seen_from
+from fabrication.gallery.scenery import pattern
 from fabrication.gallery.starts import ring_on_sphere
+from gridshell.painter import seen_from
 
 
 def figure() -> Figure:

@@ -8,7 +8,8 @@ import fabrication as fab
 import gridshell as gs
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, equal, largest
-from fabrication.gallery.scenery import lamella_faces, pattern, seen_from
+from fabrication.gallery.scenery import lamella_faces, pattern
+from gridshell.painter import seen_from
 
 PAPER = {60.0: -1.0 / 3.0, 75.0: -0.58879, 90.0: -1.0}
 """kappa1 / kappa2 as printed: -tan^2 of half the angle."""

@@ -9,7 +9,8 @@ import gridshell as gs
 from fabrication.export.raster import Scene
 from fabrication.gallery.fig_09 import net
 from fabrication.gallery.figure import Condition, Figure, largest
-from fabrication.gallery.scenery import lamella_faces, seen_from
+from fabrication.gallery.scenery import lamella_faces
+from gridshell.painter import seen_from
 
 THICKNESS = 4.0
 CLEARANCE = 0.2

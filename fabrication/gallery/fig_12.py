@@ -7,8 +7,9 @@ from math import radians
 import gridshell as gs
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, equal, largest
-from fabrication.gallery.scenery import pattern, seen_from
+from fabrication.gallery.scenery import pattern
 from fabrication.gallery.starts import dome, graph
+from gridshell.painter import seen_from
 
 
 def figure() -> Figure:

@@ -10,7 +10,8 @@ import fabrication as fab
 import gridshell as gs
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, average, equal, largest
-from fabrication.gallery.scenery import lamella_faces, pattern, seen_from
+from fabrication.gallery.scenery import lamella_faces, pattern
+from gridshell.painter import seen_from
 
 _ROOMS = {"a, b": (60.0, 90.0), "c, d": (90.0, 60.0)}
 """Degrees at the singularity and at the boundary."""

@@ -10,8 +10,9 @@ import fabrication as fab
 import gridshell as gs
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, average, largest
-from fabrication.gallery.scenery import connector_faces, lamella_faces, pattern, seen_from
+from fabrication.gallery.scenery import connector_faces, lamella_faces, pattern
 from gridshell.arrays import Points
+from gridshell.painter import seen_from
 
 SPAN = 4000.0
 _INSIDE = 0.9

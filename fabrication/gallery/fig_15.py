@@ -8,10 +8,10 @@ import numpy as np
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.export.painter import Faces, Layer, View
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, largest
-from fabrication.gallery.scenery import connector_faces, lamella_faces, seen_from
+from fabrication.gallery.scenery import connector_faces, lamella_faces
+from gridshell.painter import Faces, Layer, View, seen_from
 
 _NARROW, _WIDE = fab.Profile(100.0, 2.5, fab.STAINLESS), fab.Profile(100.0, 1.5, fab.S235)
 JOINTS: dict[str, tuple[str, fab.Profile, fab.Joint]] = {

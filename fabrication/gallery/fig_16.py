@@ -8,18 +8,10 @@ import numpy as np
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.export.painter import Faces
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, largest
-from fabrication.gallery.scenery import (
-    GLASS,
-    GREY,
-    edges,
-    lamella_faces,
-    painted,
-    polygons,
-    seen_from,
-)
+from fabrication.gallery.scenery import GLASS, GREY, edges, lamella_faces
+from gridshell.painter import Faces, painted, polygons, seen_from
 
 
 def figure() -> Figure:

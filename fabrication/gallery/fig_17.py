@@ -6,10 +6,10 @@ import numpy as np
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.export.painter import Faces
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, equal, largest
-from fabrication.gallery.scenery import lamella_faces, seen_from
+from fabrication.gallery.scenery import lamella_faces
+from gridshell.painter import Faces, seen_from
 
 SEGMENTS = fab.Segments(4, seam=50.0)
 _NOISE = 0.5

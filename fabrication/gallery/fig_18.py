@@ -8,11 +8,11 @@ import numpy as np
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.export.painter import Layer
 from fabrication.export.raster import Scene
 from fabrication.gallery.figure import Condition, Figure, largest
-from fabrication.gallery.scenery import edges, lamella_faces, seen_from
+from fabrication.gallery.scenery import edges, lamella_faces
 from gridshell.arrays import Floats, Indices, Points
+from gridshell.painter import Layer, seen_from
 
 UMBRELLA = gs.Umbrella(ribs=16, radius=1000.0, bays=(400.0,) * 8)
 TUBE = fab.HollowProfile(40.0, 14.0, fab.GRP, wall=2.0)

@@ -7,34 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 
 import gridshell as gs
-from fabrication.colours import FAMILY_COLOURS
-from fabrication.export.painter import Dots, Faces, Layer, Lines, View
 from fabrication.export.view_meshes import shape_mesh
-from fabrication.lamella import Lamella
+from fabrication.ribbons import ribbons
 from fabrication.shapes import Prisms
 from fabrication.structures import Structure
-from gridshell.arrays import Floats, Indices, Points
+from gridshell.arrays import Indices, Points
+from gridshell.painter import Dots, Faces, Layer, Lines, View, painted, polygons
 
 INK, BLACK, GREY = (0.11, 0.14, 0.18), (0.25, 0.29, 0.34), (0.6, 0.6, 0.6)
 RED, BLUE, GLASS = (0.80, 0.16, 0.14), (0.13, 0.34, 0.74), (0.72, 0.85, 0.90)
 
 FROM_ABOVE = View(np.eye(3))
-_PER_BAY = 4
 
 Colour = tuple[float, float, float]
-
-
-def painted(colour: Colour, count: int) -> Floats:
-    """(count, 3) of one colour."""
-    return np.tile(np.array(colour), (count, 1))
-
-
-def seen_from(*eye: float) -> View:
-    """A view towards the origin from the direction *eye*, z upwards."""
-    back = np.array(eye) / np.linalg.norm(eye)
-    right = np.cross([0.0, 0.0, 1.0], back)
-    right /= np.linalg.norm(right)
-    return View(np.stack([right, np.cross(back, right), back]))
 
 
 def edges(points: Points, pairs: Indices, colour: Colour = INK, width: float = 1.0) -> Lines:
@@ -59,32 +44,9 @@ def pattern(control: gs.ControlMesh) -> tuple[Layer, ...]:
     )
 
 
-def polygons(points: Points, faces: Indices) -> Floats:
-    """(m, k, 3) corners of faces padded with -1: the last corner is repeated."""
-    known = faces >= 0
-    last = np.maximum.accumulate(np.where(known, np.arange(faces.shape[1]), 0), axis=1)
-    return np.asarray(points[np.take_along_axis(np.where(known, faces, 0), last, axis=1)])
-
-
 def lamella_faces(built: Structure) -> tuple[Faces, ...]:
     """All strips of a structure by family."""
-    made = []
-    for family in (1, 2):
-        strips = [s for s in built.lamellas if s.family == family]
-        corners = [_strip(strip, built.profile.width) for strip in strips]
-        if corners:
-            found = np.concatenate(corners)
-            made.append(Faces(found, painted(FAMILY_COLOURS[family], len(found))))
-    return tuple(made)
-
-
-def _strip(strip: Lamella, width: float) -> Floats:
-    """(m, 4, 3) quads along a strip, lower and upper edge."""
-    count = max(2, _PER_BAY * len(strip.stations))
-    s = np.linspace(strip.start, strip.end, count)
-    frames = strip.frames(s)
-    low, high = frames.points - width / 2.0 * frames.n, frames.points + width / 2.0 * frames.n
-    return np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
+    return ribbons(built.lamellas, built.profile.width)
 
 
 def connector_faces(connectors: Sequence[Prisms]) -> tuple[Faces, ...]:

@@ -8,6 +8,7 @@ from gridshell.mesh.control_mesh import (
     control_mesh,
     without_families,
 )
+from gridshell.mesh.crossings import crossing_angles
 from gridshell.mesh.diagonals import DiagonalMesh, diagonal_meshes
 from gridshell.mesh.grid import grid_quads
 from gridshell.mesh.panel_mesh import PanelMesh, averaged_normals, panel_mesh
@@ -33,6 +34,7 @@ __all__ = [
     "checkerboard",
     "control_mesh",
     "corner_parity",
+    "crossing_angles",
     "diagonal_meshes",
     "diagonal_stars",
     "edge_stars",

@@ -57,6 +57,12 @@ class ControlMesh:
         quads = np.roll(self.quads, -1, axis=1)
         return ControlMesh(QuadMesh(self.vertices, quads), self.colour)
 
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        from gridshell.mesh.showing import control_mesh_html
+
+        return control_mesh_html(self)
+
 
 def as_control_mesh(mesh: QuadMesh) -> ControlMesh:
     """Take *mesh* itself as the control mesh and label its diagonals.

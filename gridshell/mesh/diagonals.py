@@ -40,6 +40,12 @@ class DiagonalMesh:
         a, b = self.vertices[self.edges.T]
         return float(np.linalg.norm(a - b, axis=1).mean())
 
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        from gridshell.mesh.showing import diagonal_mesh_html
+
+        return diagonal_mesh_html(self)
+
 
 def diagonal_meshes(control: ControlMesh) -> tuple[DiagonalMesh, DiagonalMesh]:
     """D1 and D2: each quad of the control mesh gives one edge to either."""

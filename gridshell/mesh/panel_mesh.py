@@ -71,6 +71,12 @@ class PanelMesh:
         """The same skin with other node axes (n, 3), none of them from a partial ring."""
         return panel_mesh(self.vertices, self.faces, axes, black=self.black)
 
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        from gridshell.mesh.showing import panel_mesh_html
+
+        return panel_mesh_html(self)
+
 
 def panel_mesh(
     vertices: Points,

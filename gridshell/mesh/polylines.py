@@ -8,6 +8,8 @@ import numpy as np
 
 from gridshell.arrays import Indices, frozen
 from gridshell.mesh.diagonals import DiagonalMesh
+from gridshell.mesh.quad_mesh import QuadMesh
+from gridshell.mesh.stars import edge_stars
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +34,43 @@ def polylines(net: DiagonalMesh) -> tuple[Polyline, ...]:
     Polylines run through regular vertices, along the boundary and around reflex corners; they
     end at singular vertices and where the net ends.
     """
-    links = _linked_edges(net)
-    chain, rank, closed = _chains(len(net.edges), links)
-    family = net.family[np.unique(chain, return_index=True)[1]]
     found = [
-        Polyline(int(label), frozen(_walk(net.edges[order], loop), np.int64), bool(loop))
-        for label, loop, order in zip(family, closed, _split(chain, rank), strict=True)
+        Polyline(int(net.family[order[0]]), frozen(vertices, np.int64), loop)
+        for order, vertices, loop in strands(net.edges, _linked_edges(net))
     ]
     return tuple(sorted(found, key=lambda line: line.family))
+
+
+def strands(edges: Indices, links: Indices) -> list[tuple[Indices, Indices, bool]]:
+    """Maximal runs of *edges* (m, 2) that continue each other, in the order of their first edges.
+
+    Parameters
+    ----------
+    links : (l, 2) pairs of edges that continue each other, at most one at either end of an edge.
+
+    Returns
+    -------
+    Of every run its edges in order, the vertices it meets, and whether it is closed.
+    """
+    chain, rank, closed = _chains(len(edges), links)
+    return [
+        (order, _walk(edges[order], loop), bool(loop))
+        for loop, order in zip(closed, _split(chain, rank), strict=True)
+    ]
+
+
+def edge_strands(mesh: QuadMesh) -> list[Indices]:
+    """The vertices of every run of edges of *mesh* through its regular vertices and along rims."""
+    edges, stars = mesh.edges, edge_stars(mesh)
+    keys = edges[:, 0] * len(mesh.vertices) + edges[:, 1]
+    centre, slot, opposite = stars.through().T
+    ends = np.stack([stars.spokes[centre, slot], stars.spokes[centre, opposite]], axis=1)
+    low, high = np.minimum(ends, centre[:, None]), np.maximum(ends, centre[:, None])
+    links = np.searchsorted(keys, low * len(mesh.vertices) + high)
+    return [
+        np.r_[vertices, vertices[:1]] if closed else vertices
+        for _, vertices, closed in strands(edges, links)
+    ]
 
 
 def _linked_edges(net: DiagonalMesh) -> Indices:

@@ -155,6 +155,12 @@ class QuadMesh:
         """The same connectivity at other positions."""
         return QuadMesh(vertices, self.quads)
 
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        from gridshell.mesh.showing import quad_mesh_html
+
+        return quad_mesh_html(self)
+
     # ---- checks -----------------------------------------------------------------------------
 
     def _check_fans(self) -> None:

@@ -7,12 +7,14 @@ from types import SimpleNamespace
 import ezdxf
 import numpy as np
 import pytest
+from pypdf import PdfReader
 
 import fabrication as fab
 import gridshell as gs
 from fabrication import lamella_system, package, routes
 from fabrication.cut import area
 from fabrication.errors import KernelError, OutputError, StockError
+from fabrication.export.words import number
 from fabrication.finding import Finding, Severity
 from gridshell.mesh import grid_quads
 
@@ -28,7 +30,8 @@ SMALL = {
     "sheet": {"length": 4000.0, "width": 350.0},
 }
 FILES = {
-    *["net.json", "net.obj", "report.json", "report.html", "structure.step", "parts.csv"],
+    *["net.json", "net.obj", "structure.step", "parts.csv"],
+    *["report.json", "report.html", "report.pdf"],
     *["assembly.csv", "bays.csv", "bill.csv", "drawings.pdf"],
     *["sheets/sheet-01.dxf", "sheets/sheet-02.dxf"],
 }
@@ -98,6 +101,22 @@ def test_nothing_is_left_beside_the_folder(done):
 def test_the_report_on_disk_is_what_the_run_returned(done):
     out, report, _ = done
     assert json.loads((out / "report.json").read_text()) == report
+
+
+def test_the_report_on_paper_holds_the_figures_of_the_one_on_disk(done):
+    out, report, _ = done
+    text = "\n".join(page.extract_text() for page in PdfReader(out / "report.pdf").pages)
+    built, net = report["structure"], report["net"]
+    for value in (
+        f"{built['total_length_m']:.1f} m",
+        f"{number(built['mass_kg'])} kg",
+        f"{net['node_angle_deg']['min']:.2f} to {net['node_angle_deg']['max']:.2f}",
+        report["stress"]["utilisation"]["where"],
+        report["closure"]["worst"],
+    ):
+        assert value in text
+    assert f"{built['lamellas']} lamellas, {built['nodes']} nodes" in text
+    assert "Utilisation of the strength, by bay" in text
 
 
 KEYS = {

@@ -60,7 +60,8 @@ def test_every_file_of_the_package_is_there_and_none_of_an_earlier_run(done):
     built = report["structure"]
     sheets = {f"sheets/panels-{n:02d}.dxf" for n in range(1, built["panel_sheets"] + 1)}
     sheets |= {f"sheets/plates-{n:02d}.dxf" for n in range(1, built["plate_sheets"] + 1)}
-    whole = {"net.json", "net.obj", "parts.csv", "report.html", "report.json", "structure.step"}
+    whole = {"net.json", "net.obj", "parts.csv", "structure.step"}
+    whole |= {"report.html", "report.json", "report.pdf"}
     assert names(out) == whole | sheets
 
 

@@ -5,8 +5,8 @@ import fabrication as fab
 import gridshell as gs
 from fabrication.cut import Cuts
 from fabrication.jointed import Jointed
-from fabrication.parts import hollow_area
 from fabrication.solid import lamella_solid, volume
+from fabrication.stock import hollow_area
 
 TUBE = fab.HollowProfile(50.0, 20.0, fab.GRP, 2.5)
 

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 import gridshell as gs
-from gridshell.angles import angles_at, crossing_angles, edge_crossings, face_crossings
+from gridshell.angles import angles_at, edge_crossings, face_crossings
+from gridshell.mesh import crossing_angles
 
 POINTS = np.array([[0.0, 0.0, 0.0], [3.0, 4.0, 0.0], [30.0, 40.0, 0.0]])
 

@@ -193,3 +193,31 @@ def test_the_curvature_ratio_of_a_paraboloid_is_that_of_its_coefficients(grid, r
 
 def test_a_mesh_too_small_to_tell_has_no_curvature_ratio(grid):
     assert gs.net_quality(gs.as_control_mesh(grid(2, 2))).curvature_ratio is None
+
+
+def test_figures_and_summary_are_one(crumpled):
+    surface = gs.Enneper(4000.0)
+    quality = gs.net_quality(crumpled, angle=np.radians(75.0), rhombus=True, reference=surface)
+    found = quality.figures
+    for key in ("star_planarity", "angle_error_deg", "rhombus_error", "surface_distance_mm"):
+        values = getattr(found, key)
+        assert (values.mean(), values.max()) == (
+            getattr(quality, key).mean,
+            getattr(quality, key).max,
+        )
+    for key in ("node_angle_deg", "edge_ratio", "corner_angle_deg"):
+        values = getattr(found, key)
+        assert (values.min(), values.max()) == getattr(quality, key)
+    assert found.face_planarity is found.sphericity is None
+    assert len(found.corner_angle_deg) == 4 * len(crumpled.quads)
+
+
+def test_a_distance_that_was_not_asked_for_is_measured_later(crumpled):
+    surface = gs.Enneper(4000.0)
+    plain, asked = gs.net_quality(crumpled), gs.net_quality(crumpled, reference=surface)
+    later = gs.measured_against(plain, crumpled, surface)
+    assert plain.surface_distance_mm is plain.figures.surface_distance_mm is None
+    assert later == asked
+    np.testing.assert_array_equal(
+        later.figures.surface_distance_mm, asked.figures.surface_distance_mm
+    )

@@ -12,7 +12,7 @@ from fabrication.jointed import BillLine, Jointed
 from fabrication.parts import FlatPart
 from fabrication.strength import NOT_CHECKED
 
-_BILL = (
+BILL_COLUMNS = (
     Column("item", 1.2),
     Column("size", 3.0),
     Column("quantity", 0.8, "right"),
@@ -71,8 +71,8 @@ def index_page(
 def bill_pages(jointed: Jointed, *, paper: str) -> Iterator[Page]:
     """The bill of material besides the strips."""
     if jointed.bill:
-        rows = [_bill_row(line) for line in jointed.bill]
-        yield from table_pages("Bill of material", _BILL, rows, paper=paper)
+        rows = [bill_row(line) for line in jointed.bill]
+        yield from table_pages("Bill of material", BILL_COLUMNS, rows, paper=paper)
 
 
 def finding_pages(findings: Sequence[Finding], *, paper: str) -> Iterator[Page]:
@@ -91,7 +91,8 @@ def finding_pages(findings: Sequence[Finding], *, paper: str) -> Iterator[Page]:
     yield from table_pages("Findings", _FINDINGS, rows, paper=paper)
 
 
-def _bill_row(line: BillLine) -> tuple[str, ...]:
+def bill_row(line: BillLine) -> tuple[str, ...]:
+    """The cells of a line of the bill."""
     quantity = f"{line.quantity:g}" if line.unit == "pcs" else f"{line.quantity / 1e3:.2f} m"
     mass = "" if line.mass is None else f"{line.mass:.3g}"
     return (line.item, line.size, quantity, line.material, mass, line.note)

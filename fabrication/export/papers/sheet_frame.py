@@ -7,6 +7,7 @@ are counted before the first one is drawn, so that every title block says which 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
@@ -34,6 +35,13 @@ TEXT = 2.5
 _FONT, _BOLD = "Helvetica", "Helvetica-Bold"
 _CAP = 0.716
 """Height of capitals over the font's size."""
+
+_RAISED = "⁻⁰⁴⁵⁶⁷⁸⁹"
+"""Superscripts that the fonts have not; they have ¹²³."""
+
+_POWER = re.compile(f"[{_RAISED}¹²³]*[{_RAISED}][{_RAISED}¹²³]*")
+_LOWERED = str.maketrans(_RAISED + "¹²³", "-0456789123")
+_NEAREST = {0x2212: "-", 0x202F: "\xa0", **dict.fromkeys(range(0x20), " ")}
 
 
 @dataclass(frozen=True)
@@ -147,7 +155,16 @@ class Pen:
 
 
 def printable(text: str) -> str:
-    """*text* in the letters of the built-in fonts; others become question marks."""
+    """*text* in the letters of the built-in fonts; others become question marks.
+
+    Powers of ten are written with a ^, minus signs as hyphens.
+    """
+    text = re.sub(
+        f"[¹²³]*[{_RAISED}][{_RAISED}¹²³]*|⁻[¹²³]+",
+        lambda found: "^" + found[0].translate(_LOWERED),
+        text,
+    )
+    text = text.translate(_NEAREST)
     return text.encode("cp1252", errors="replace").decode("cp1252")
 
 

@@ -3,8 +3,8 @@ import pytest
 from PIL import Image
 
 from fabrication.errors import OutputError
-from fabrication.export.painter import Dots, Faces, Lines, View
 from fabrication.export.raster import Scene, write_png
+from gridshell.painter import Dots, Faces, Lines, View
 
 VIEW = View(np.eye(3))
 RED, BLUE = np.array([[1.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]])

@@ -8,9 +8,9 @@ import pytest
 import gridshell as gs
 from fabrication.errors import OutputError
 from fabrication.export import stages as module
-from fabrication.export.painter import Dots, Faces, Lines
 from fabrication.export.stages import HOTTEST, heat, pictures, stages, view_of, write_stages
 from gridshell.mesh import grid_quads
+from gridshell.painter import Dots, Faces, Lines
 
 
 @pytest.fixture(scope="module")

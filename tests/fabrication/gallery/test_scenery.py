@@ -2,7 +2,8 @@ import numpy as np
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.gallery.scenery import connector_faces, lamella_faces, polygons, seen_from
+from fabrication.gallery.scenery import connector_faces, lamella_faces
+from gridshell.painter import polygons, seen_from
 
 
 def test_padded_faces_repeat_their_last_corner():

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gridshell.arrays import Floats, Points, Vectors, unit
+from gridshell.arrays import Floats, Indices, Points, Vectors, unit
 
 WIDTH, _MARGIN = 760.0, 14.0
 _AHEAD, _ASIDE = 0.8, 0.6
@@ -98,6 +98,14 @@ class View:
         return np.asarray(points @ self.frame.T)
 
 
+def seen_from(*eye: float) -> View:
+    """A view towards the origin from the direction *eye*, z upwards."""
+    back = np.array(eye) / np.linalg.norm(eye)
+    right = np.cross([0.0, 0.0, 1.0], back)
+    right /= np.linalg.norm(right)
+    return View(np.stack([right, np.cross(back, right), back]))
+
+
 def bounds(layers: Sequence[Layer], view: View) -> Floats:
     """Lower left and upper right (2, 2) of what is seen of *layers*, mm."""
     flat = np.concatenate([view.seen(corners(layer)).reshape(-1, 3) for layer in layers])
@@ -124,7 +132,7 @@ class Mark:
 
 def in_order(layers: Sequence[Layer], view: View) -> list[Mark]:
     """Everything in *layers* from far to near."""
-    ahead = max((_thickness(view, layer) for layer in layers), default=0.0)
+    ahead = max((thickness(view, layer) for layer in layers), default=0.0)
     depths, marks = [], []
     for layer in layers:
         placed = view.seen(corners(layer))
@@ -180,7 +188,26 @@ def corners(layer: Layer) -> Floats:
     return layer.ends if isinstance(layer, Lines) else layer.places[:, None]
 
 
-def _thickness(view: View, layer: Layer) -> float:
+def polygons(points: Points, faces: Indices) -> Floats:
+    """(m, k, 3) corners of faces padded with -1: the last corner is repeated."""
+    known = faces >= 0
+    last = np.maximum.accumulate(np.where(known, np.arange(faces.shape[1]), 0), axis=1)
+    return np.asarray(points[np.take_along_axis(np.where(known, faces, 0), last, axis=1)])
+
+
+def padded(outlines: Sequence[Points]) -> Floats:
+    """(m, k, 3) corners of polygons of any number of corners: the last one is repeated."""
+    most = max((len(one) for one in outlines), default=3)
+    rows = [one[np.minimum(np.arange(most), len(one) - 1)] for one in outlines]
+    return np.array(rows, dtype=np.float64).reshape(-1, most, 3)
+
+
+def painted(colour: tuple[float, float, float], count: int) -> Floats:
+    """(count, 3) of one colour."""
+    return np.tile(np.array(colour), (count, 1))
+
+
+def thickness(view: View, layer: Layer) -> float:
     """Depth of a large face, mm."""
     if not isinstance(layer, Faces) or len(layer.corners) == 0:
         return 0.0

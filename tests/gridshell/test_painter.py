@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from fabrication.export.painter import Dots, Faces, Lines, View, bounds, hexadecimal, shaded, svg
+from gridshell.painter import Dots, Faces, Lines, View, bounds, hexadecimal, shaded, svg
 
 SQUARE = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]], dtype=float) * 1000.0
 RED, BLUE = np.array([[1.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]])
