@@ -166,7 +166,9 @@ class LamellaSystem:
             kernel_seconds=solid.seconds,
         )
 
-    def write_page(self, path: Path, report: Report, pictures: Sequence[Report]) -> None:
+    def write_page(
+        self, path: Path, report: Report, pictures: Sequence[Report], series: Sequence[Series]
+    ) -> None:
         """The report on lamellas."""
         from fabrication.export.report import write_report
 
@@ -182,6 +184,7 @@ class LamellaSystem:
             clearance=joint.clearance if isinstance(joint, SlottedJoint) else None,
             facade=None if self.facade is None else self.facade.built,
             pictures=pictures,
+            series=series,
             copies=() if self.segmented is None else self.segmented.segments.poses[1:],
             moving=None if self.moving is None else (self.moving.motion, self.moving.opening),
         )

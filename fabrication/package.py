@@ -279,7 +279,7 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
         "kernel_timing": written.kernel_seconds,
     }
     with clock.stage("report"):
-        design.system.write_page(draft / "report.html", report, _pictures(design))
+        design.system.write_page(draft / "report.html", report, _pictures(design), design.series)
         design.system.write_paper(draft / "report.pdf", report, design.series)
     text = json.dumps(report, indent=2, allow_nan=False)
     (draft / "report.json").write_text(text + "\n", encoding="utf-8")

@@ -166,7 +166,9 @@ class PanelNetSystem:
             kernel_seconds=solid.seconds,
         )
 
-    def write_page(self, path: Path, report: Report, pictures: Sequence[Report]) -> None:
+    def write_page(
+        self, path: Path, report: Report, pictures: Sequence[Report], series: Sequence[Series]
+    ) -> None:
         """The report on panels."""
         from fabrication.export.panel_report import write_panel_report
 
@@ -179,6 +181,7 @@ class PanelNetSystem:
             plate_sheets=self.plate_sheets,
             star_sheets=self.star_sheets,
             pictures=pictures,
+            series=series,
         )
 
     def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:

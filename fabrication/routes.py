@@ -73,8 +73,10 @@ class System(Protocol):
         ``net.json`` is there already.
         """
 
-    def write_page(self, path: Path, report: Report, pictures: Sequence[Report]) -> None:
-        """Write ``report.html``."""
+    def write_page(
+        self, path: Path, report: Report, pictures: Sequence[Report], series: Sequence[Series]
+    ) -> None:
+        """Write ``report.html``; *series* are the figures of the net."""
 
     def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:
         """Write ``report.pdf``; *series* are the figures of the net."""

@@ -8,25 +8,15 @@ from typing import Any
 
 import numpy as np
 
-import gridshell as gs
 from fabrication.colours import css
 from fabrication.errors import OutputError
-from fabrication.export.flat_drawing import piece_svg
 from fabrication.export.panel_schedule import schedule_rows
-from fabrication.export.report import middle, shared
-from fabrication.export.scene.layers import Scene, on_screen
-from fabrication.export.scene.net import net_layers
-from fabrication.export.scene.panels import (
-    group_colours,
-    panel_layers,
-    plate_colouring,
-    support_layers,
-)
-from fabrication.export.scene.strips import axis_layers
+from fabrication.export.quality_series import Series
+from fabrication.export.report import shared
+from fabrication.export.scene.panels import group_colours
+from fabrication.export.scene.whole import panel_patterns, panel_scene
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import COLOURS, PanelStructure
-from fabrication.sheet_parts import panel_piece, plate_piece, star_piece
-from gridshell.arrays import Floats
 
 
 def write_panel_report(
@@ -39,6 +29,7 @@ def write_panel_report(
     plate_sheets: Sequence[NestedSheet],
     star_sheets: Sequence[NestedSheet] = (),
     pictures: Sequence[Mapping[str, Any]] = (),
+    series: Sequence[Series] = (),
 ) -> None:
     """Write the page.
 
@@ -47,6 +38,7 @@ def write_panel_report(
     report : what ``report.json`` holds.
     built : what is built; the sheets are those of its panels and plates.
     pictures : of the way from the surface to the net.
+    series : the figures of the net, element by element.
 
     Raises
     ------
@@ -59,6 +51,7 @@ def write_panel_report(
         name=name,
         report=report,
         pictures=pictures,
+        series=series,
         scene=panel_scene(built),
         patterns=panel_patterns(built),
         system=built.system,
@@ -89,31 +82,6 @@ def write_panel_report(
         raise OutputError(
             "The report cannot be written", where=str(path), value=error.strerror or ""
         ) from None
-
-
-def panel_patterns(built: PanelStructure) -> dict[str, str]:
-    """The drawings of all panels, plates and star plates by their marks: SVG."""
-    pieces = [panel_piece(panel) for panel in built.panels]
-    pieces += [plate_piece(plate) for plate in built.plates]
-    pieces += [star_piece(piece) for piece in built.pieces]
-    return {piece.mark: piece_svg(piece) for piece in pieces}
-
-
-def panel_scene(
-    built: PanelStructure, *, net: gs.ControlMesh | None = None, centre: Floats | None = None
-) -> Scene:
-    """Panels, plates, connectors and marks.
-
-    Parameters
-    ----------
-    net : the control mesh; its layers are left out without.
-    centre : (3,) mm, the origin of the scene; the middle of the vertices without.
-    """
-    vertices = built.mesh.vertices
-    centre = middle(vertices) if centre is None else centre
-    layers = [*panel_layers(built, centre), *support_layers(built, centre)]
-    layers += [] if net is None else net_layers(net, centre)
-    return Scene([*layers, *axis_layers(on_screen(vertices, centre))], plate_colouring(built))
 
 
 def _sheets(sheets: Sequence[NestedSheet], prefix: str) -> list[dict[str, Any]]:

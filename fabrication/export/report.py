@@ -9,7 +9,6 @@ inlined, and the page's own policy forbids every request.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,22 +17,17 @@ import numpy as np
 from jinja2 import ChainableUndefined, Environment, FileSystemLoader
 from markupsafe import Markup
 
-import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.errors import OutputError
-from fabrication.export.flat_drawing import shape_svg
-from fabrication.export.scene.bodies import connector_layers, pattern_key
-from fabrication.export.scene.layers import Layer, Scene, on_screen
-from fabrication.export.scene.motion import motion_layers
-from fabrication.export.scene.net import net_layers
+from fabrication.export.quality_series import Series, histograms, stress_series
+from fabrication.export.scene.layers import Scene
 from fabrication.export.scene.page import as_json, deflated, scripts, style
-from fabrication.export.scene.panels import panel_layers
-from fabrication.export.scene.strips import axis_layers, strip_layers
+from fabrication.export.scene.whole import flat_patterns, lamella_scene
 from fabrication.export.schedule import mass
-from fabrication.export.stress_view import net_words, stress_colourings, stress_rows
+from fabrication.export.stress_view import net_words, stress_rows
 from fabrication.export.strip_drawing import strip_drawing
-from fabrication.export.words import finite, fixed, number, plural, raised
-from fabrication.finding import Severity
+from fabrication.export.verdicts import finding_groups, verdict
+from fabrication.export.words import fixed, number, plural
 from fabrication.jointed import Jointed
 from fabrication.motion import Motion
 from fabrication.nesting import NestedSheet, sheets_of
@@ -42,7 +36,6 @@ from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress, bay_stress
 from fabrication.stress_checks import stress_section
-from gridshell.arrays import Floats, Points
 
 
 def write_report(
@@ -57,6 +50,7 @@ def write_report(
     clearance: float | None = None,
     facade: PanelStructure | None = None,
     pictures: Sequence[Mapping[str, Any]] = (),
+    series: Sequence[Series] = (),
     copies: Sequence[Frame] = (),
     moving: tuple[Motion, float] | None = None,
 ) -> None:
@@ -73,6 +67,7 @@ def write_report(
     clearance : of the slots, mm; None leaves it out.
     facade : panels above the strips, where there are any.
     pictures : of the way from the surface to the net, see ``stages``.
+    series : the figures of the net, element by element; those of the strips come from *stress*.
     copies : where else the shell stands, drawn as lines.
     moving : how the net opens, and how far it is opened as built.
 
@@ -88,6 +83,7 @@ def write_report(
         name=name,
         report=report,
         pictures=pictures,
+        series=[*series, stress_series(stress)],
         scene=lamella_scene(jointed, parts, stress, facade=facade, copies=copies, moving=moving),
         patterns=flat_patterns(jointed, parts),
         stress=stress_section(stress),
@@ -116,71 +112,13 @@ def write_report(
         ) from None
 
 
-def lamella_scene(
-    jointed: Jointed,
-    parts: Sequence[FlatPart],
-    stress: BayStress,
-    *,
-    facade: PanelStructure | None = None,
-    copies: Sequence[Frame] = (),
-    net: gs.ControlMesh | None = None,
-    moving: tuple[Motion, float] | None = None,
-    centre: Floats | None = None,
-) -> Scene:
-    """Strips, nodes, connectors, and the panels above them, hidden until they are asked for.
-
-    Parameters
-    ----------
-    net : the control mesh; its layers are left out without.
-    moving : how the net opens, and how far it is opened as built.
-    centre : (3,) mm, the origin of the scene; the middle of the nodes without.
-    """
-    nodes = np.array([node.position for node in jointed.design.nodes])
-    centre = middle(nodes) if centre is None else centre
-    layers: list[Layer] = strip_layers(jointed, parts, stress, centre, copies)
-    layers += connector_layers(jointed.connectors, centre)
-    if facade is not None:
-        layers += panel_layers(facade, centre, visible=False)
-    if net is not None:
-        layers += net_layers(net, centre)
-    if moving is not None:
-        layers += motion_layers(moving[0], centre, moving[1])
-    return Scene([*layers, *axis_layers(on_screen(nodes, centre))], stress_colourings(stress))
-
-
-def middle(points: Points) -> Floats:
-    """(3,) of the box around *points* (n, 3)."""
-    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2.0)
-
-
-def flat_patterns(jointed: Jointed, parts: Sequence[FlatPart]) -> dict[str, str]:
-    """The drawings of all flat strips by their marks, and of all shapes of connectors: SVG."""
-    families = [lamella.family for lamella in jointed.strips.lamellas]
-    strips = {
-        part.mark: strip_svg(part, family) for part, family in zip(parts, families, strict=True)
-    }
-    shapes = {
-        pattern_key(prisms, number): shape_svg(shape)
-        for prisms in jointed.connectors
-        for number, shape in enumerate(prisms.shapes)
-    }
-    return {**strips, **shapes}
-
-
-def strip_svg(part: FlatPart, family: int) -> str:
-    """The drawing of one flat strip as an SVG that stands alone."""
-    drawn: str = _template("strip.html").module.strip(
-        strip_drawing(part), css(FAMILY_COLOURS[family])
-    )
-    return re.sub(r"[ \n]+", " ", drawn).strip()
-
-
 def shared(
     template: str,
     *,
     name: str,
     report: Mapping[str, Any],
     pictures: Sequence[Mapping[str, Any]],
+    series: Sequence[Series],
     scene: Scene,
     patterns: Mapping[str, str],
     **more: Any,
@@ -189,17 +127,19 @@ def shared(
 
     Parameters
     ----------
+    series : what the histograms are drawn of.
     scene : of the 3D view.
     patterns : SVG of flat parts, by their marks.
     """
-    level, verdict = _verdict(report.get("findings"))
+    level, words = verdict(report.get("findings"))
     page: str = _template(template).render(
         name=name,
         report=report,
         level=level,
-        verdict=verdict,
-        groups=_groups(report.get("findings") or ()),
+        verdict=words,
+        groups=finding_groups(report.get("findings") or ()),
         pictures=[{**picture, "svg": Markup(picture["svg"])} for picture in pictures],
+        histograms=[Markup(svg) for svg in histograms(series)],
         scene=as_json(scene.packed()),
         patterns=deflated(patterns),
         scripts=scripts(),
@@ -219,46 +159,3 @@ def _template(name: str) -> Any:
     )
     environment.filters.update(figure=number, fixed=fixed, plural=plural)
     return environment.get_template(name)
-
-
-# ---- words and numbers ----------------------------------------------------------------------
-
-_GRADES = [grade.value for grade in (Severity.ERROR, Severity.WARNING, Severity.INFO)]
-
-
-def _verdict(findings: Sequence[Mapping[str, Any]] | None) -> tuple[str, str]:
-    """The worst severity, or "good" or "unknown", and the line that says so."""
-    if findings is None:
-        return "unknown", "Not checked"
-    if not findings:
-        return "good", "Good: no findings"
-    grades = [_GRADES[_gravity(finding)] for finding in findings]
-    counts = ", ".join(plural(grades.count(g), g) for g in _GRADES if g in grades)
-    text = f"{plural(len(findings), 'finding')} ({counts})"
-    worst = _GRADES[min(map(_gravity, findings))]
-    return ("good", f"Good, with {text}") if worst == Severity.INFO.value else (worst, text)
-
-
-def _gravity(finding: Mapping[str, Any]) -> int:
-    """0 for an error, and for what is no known severity."""
-    grade = finding.get("severity")
-    return _GRADES.index(grade) if grade in _GRADES else 0
-
-
-def _groups(findings: Sequence[Mapping[str, Any]]) -> list[list[dict[str, Any]]]:
-    """The findings as people read them, those of one severity and code together, gravest first."""
-    groups: dict[tuple[int, Any], list[dict[str, Any]]] = {}
-    for finding in sorted(findings, key=_gravity):
-        key = _gravity(finding), finding.get("code")
-        groups.setdefault(key, []).append(_readable(finding))
-    return list(groups.values())
-
-
-def _readable(finding: Mapping[str, Any]) -> dict[str, Any]:
-    """*finding* with twist in degrees per metre, as its message says it, and raised exponents."""
-    shown = {key: raised(text) if isinstance(text, str) else text for key, text in finding.items()}
-    if finding.get("unit") == "rad/mm":
-        values = {key: finding[key] for key in ("value", "limit") if finite(finding.get(key))}
-        shown |= {key: float(np.degrees(v)) * 1000.0 for key, v in values.items()}
-        shown["unit"] = "degrees/m"
-    return shown

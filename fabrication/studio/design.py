@@ -14,6 +14,7 @@ from functools import cached_property
 from pathlib import Path
 
 import gridshell as gs
+from fabrication.export.scene.whole import flat_patterns, panel_patterns
 from fabrication.finding import Finding
 from fabrication.lamella_system import LamellaSystem
 from fabrication.net_checks import check_net
@@ -144,9 +145,6 @@ def find_net(
 
 def patterns_of(system: System) -> dict[str, str]:
     """Drawings of all flat parts of *system*, SVG."""
-    from fabrication.export.panel_report import panel_patterns
-    from fabrication.export.report import flat_patterns
-
     if isinstance(system, LamellaSystem):
         return flat_patterns(system.jointed, system.parts)
     return panel_patterns(system.built) if isinstance(system, PanelNetSystem) else {}

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fabrication.export.panel_report import panel_scene
-from fabrication.export.report import lamella_scene, middle
 from fabrication.export.scene.layers import Colouring, Scene
 from fabrication.export.scene.net import net_colourings, net_layers
+from fabrication.export.scene.whole import lamella_scene, middle, panel_scene
 from fabrication.lamella_system import LamellaSystem
 from fabrication.panel_route import PanelNetSystem
 from fabrication.studio.design import Built, NetDesign

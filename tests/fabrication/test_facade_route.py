@@ -71,7 +71,7 @@ def test_sheets_and_cut_list_hold_panels_and_profiles(done):
 def test_the_page_shows_the_panels(done):
     page = (done[1] / "report.html").read_text()
     assert "Triangular panels" in page
-    assert '"name":"Panels"' in page
+    assert '"name": "Panels"' in page
 
 
 def test_a_run_without_the_facade_takes_its_files_away(tmp_path):

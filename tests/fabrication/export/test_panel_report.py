@@ -5,9 +5,10 @@ import pytest
 
 import fabrication as fab
 from fabrication.errors import OutputError
-from fabrication.export.panel_report import panel_scene, write_panel_report
+from fabrication.export.panel_report import write_panel_report
 from fabrication.export.panel_schedule import COLUMNS, schedule_rows, write_panel_schedule
 from fabrication.export.scene.panels import group_colours
+from fabrication.export.scene.whole import panel_scene
 from fabrication.sheet_parts import panel_piece, plate_piece
 
 

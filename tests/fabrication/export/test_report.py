@@ -11,6 +11,7 @@ import pytest
 import gridshell as gs
 from fabrication.cut import Floor, Hole, Relief
 from fabrication.errors import OutputError
+from fabrication.export.quality_series import net_series
 from fabrication.export.report import write_report
 from fabrication.export.scene.page import scripts
 from fabrication.export.schedule import mass
@@ -432,13 +433,29 @@ def test_the_cut_list_tells_lengths_slots_and_totals(page, catenoid):
 def test_the_longest_strip_is_drawn_with_its_stations(page, catenoid):
     text = page()
     part = max(catenoid[1], key=lambda part: round(part.length, 1))
-    drawing = text[text.index("<svg") : text.index("</svg>")]
+    drawing = text[text.index('<svg class="flat"') :]
+    drawing = drawing[: drawing.index("</svg>")]
     for station in (0.0, *(slot.x for slot in part.slots), part.length):
         assert f">{station:,.1f}</text>".replace(",", "\u202f") in drawing
     for slot in part.slots:
         assert f">{slot.partner}</text>" in drawing
     corners = re.search(r'class="strip" d="([^"]*)"', drawing)[1]
     assert len(re.findall("[ML]", corners)) - 1 == len(part.outline)
+
+
+def test_the_quality_is_shown_as_histograms(tmp_path, catenoid):
+    quality = gs.net_quality(
+        gs.control_patch(gs.Catenoid(1000.0), gs.BisectingPatch((-0.8, 0.8), 24)),
+        angle=np.radians(90.0),
+        reference=gs.Catenoid(1000.0),
+    )
+    path = tmp_path / "report.html"
+    jointed, parts = catenoid
+    series = net_series(quality.figures)
+    write_report(path, name="x", report=REPORT, jointed=jointed, parts=parts, series=series)
+    text = path.read_text(encoding="utf-8")
+    titles = re.findall(r'<svg[^>]*class="histogram"[^>]*aria-label="([^"]*)"', text)
+    assert titles == [one.title for one in series] + ["Utilisation of the strength, by bay"]
 
 
 def test_times_are_listed(page):
@@ -556,7 +573,8 @@ def test_a_strip_with_rounded_floors_holes_and_bevels_is_drawn_with_them(page, c
     for relief, arcs in ((Relief(Floor.ROUND), 1), (Relief(Floor.DOGBONE, 0.4), 2)):
         parts = parts_of(made, relief)
         text = page(design=(made, parts))
-        drawing = text[text.index("<svg") : text.index("</svg>")]
+        drawing = text[text.index('<svg class="flat"') :]
+        drawing = drawing[: drawing.index("</svg>")]
         path = re.search(r'class="strip" d="([^"]*)"', drawing)[1]
         longest = max(parts, key=lambda part: round(part.length, 1))
         assert path.count("A") == arcs * len(longest.slots)
