@@ -21,6 +21,7 @@ from fabrication.angle_sections import ANGLE_CHOICES, FieldSection, MirrorSectio
 from fabrication.angle_settings import require_angle
 from fabrication.errors import ProjectError
 from fabrication.export_sections import ExportSection
+from fabrication.export_settings import require_export
 from fabrication.joint_sections import (
     BlocksSection,
     CleatSection,
@@ -87,6 +88,7 @@ def read_project(path: Path | str) -> Project:
     require_makeable(project, path)
     require_angle(project, path)
     require_panels(project, path)
+    require_export(project, path)
     return project
 
 
