@@ -16,7 +16,7 @@ _PLATES = "glb, ply, obj, 3dm, ifc, or the DXF sheets, which are always there"
 
 
 def require_formats_fit(project: Project) -> None:
-    """Refuse NC1 of what is no steel plate.
+    """Refuse NC1 of what is no steel plate, and BTLx of what is no timber strip.
 
     Raises
     ------
@@ -26,6 +26,8 @@ def require_formats_fit(project: Project) -> None:
     formats = () if project.export is None else project.export.formats
     if "nc1" in formats:
         _require_nc1(project)
+    if "btlx" in formats:
+        _require_btlx(project)
 
 
 def require_export(project: Project, path: Path) -> None:
@@ -55,6 +57,17 @@ def _require_nc1(project: Project) -> None:
             "square ends",
             "joint.square_ends = true, or leave nc1 out",
         )
+
+
+def _require_btlx(project: Project) -> None:
+    if project.profile is None:
+        raise _refused("BTLx files are of strips", "panels", "projects with [profile]")
+    profile = profile_of(project.profile)
+    if not profile.material.is_timber:
+        told = f"strips of {profile.material.name}"
+        raise _refused("BTLx files are of timber", told, "birch-ply, poplar-ply, own timber")
+    if wall_of(profile):
+        raise _refused("BTLx files are of solid strips", "a hollow section", "solid strips")
 
 
 def _materials(project: Project) -> Iterator[Material]:

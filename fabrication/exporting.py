@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from fabrication.export.btlx.files import write_btlx
 from fabrication.export.cut_sets import CutSet
 from fabrication.export.interchange.ifc import write_ifc
 from fabrication.export.interchange.meshes import write_glb, write_obj_groups, write_ply
@@ -25,7 +26,7 @@ FORMATS: dict[str, Callable[[Path, Model], None]] = {
 
 FILES = (
     *(f"export/structure.{form}" for form in FORMATS),
-    *("export/nc1/*.nc1", "export/nc1/index.csv"),
+    *("export/structure.btlx", "export/nc1/*.nc1", "export/nc1/index.csv"),
 )
 """Patterns of all files that may come."""
 
@@ -82,3 +83,5 @@ def write_exports(
         sets = cut()
         if "nc1" in formats:
             write_nc1(folder / "nc1", name, sets)
+        if "btlx" in formats:
+            write_btlx(folder / "structure.btlx", name, sets)

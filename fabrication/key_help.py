@@ -88,7 +88,7 @@ KEYS: dict[str, dict[str, str]] = {
         "seam": "mm that strips of neighbours keep",
         "hang": "list the nodes upside down, as a segment is put together",
     },
-    "export": {"formats": "of glb, ply, obj, 3dm (Rhino), ifc (IFC4), nc1 (steel plates)"},
+    "export": {"formats": "of glb, ply, obj, 3dm (Rhino), ifc (IFC4), nc1 (steel), btlx (timber)"},
     "remesh": {
         "directions": "asymptotic for strips; principal or conjugate for panels",
         "angle": "degrees between conjugate directions",

@@ -40,6 +40,7 @@ def project(form, base=STRIPS, profile=None, **changes):
     ("form", "profile"),
     [
         *(("nc1", {"material": name}) for name in ("S235", "S355", "stainless")),
+        *(("btlx", {"material": name}) for name in ("birch-ply", "poplar-ply", SPRUCE)),
         ("nc1", {"material": {**SPRUCE, "name": "corten", "modulus": 210e3, "density": 7850.0}}),
         ("ifc", {"material": "GRP"}),
     ],
@@ -56,6 +57,9 @@ def test_steel_goes_with_nc1_and_timber_with_btlx(form, profile):
         ("nc1", {"profile": {"material": "GRP"}}, "strips of GRP"),
         ("nc1", {"profile": TUBE, "joint": {"kind": "hinged", "pin": 6.0}}, "a hollow section"),
         ("nc1", {"joint": {"kind": "reciprocal", "weld": 20.0}}, "bevelled ends"),
+        ("btlx", {}, "strips of stainless"),
+        ("btlx", {"profile": {"material": "GRP"}}, "strips of GRP"),
+        ("btlx", {"base": PANELS}, "panels"),
         ("nc1", {"base": PANELS}, "glass"),
     ],
 )

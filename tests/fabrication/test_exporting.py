@@ -4,6 +4,7 @@ import csv
 import json
 import sys
 from collections import Counter
+from xml.etree import ElementTree
 
 import ifcopenshell
 import pytest
@@ -184,6 +185,18 @@ def test_a_steel_shell_has_nc1_files_of_strips_washers_and_splice_plates(tmp_pat
     strips = [k for k, row in enumerate(rows) if row["kind"] == "strips"]
     total = sum(lengths[k] * int(rows[k]["quantity"]) for k in strips) / 1e3
     assert total == pytest.approx(structure["total_length_m"], abs=1e-3)
+
+
+def test_a_timber_shell_has_a_part_per_strip_in_btlx(tmp_path):
+    content = project("btlx").model_dump()
+    content["profile"].update(material="birch-ply", thickness=9.0, width=80.0)
+    content["segments"] = {"count": 2, "centre": (9000.0, 0.0)}
+    report = fab.run(fab.Project.model_validate(content), tmp_path, folder=tmp_path)
+    root = ElementTree.parse(tmp_path / "export" / "structure.btlx").getroot()
+    parts = list(root.iter("{https://www.design2machine.com}Part"))
+    assert sum(int(part.get("Count")) for part in parts) == 2 * report["structure"]["strips"]
+    total = sum(float(part.get("Length")) * int(part.get("Count")) for part in parts) / 1e3
+    assert total == pytest.approx(report["structure"]["total_length_m"], abs=1e-3)
 
 
 GLASS_ON_STEEL = """
