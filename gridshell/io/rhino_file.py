@@ -127,6 +127,7 @@ def _require_quads(faces: Indices, where: str) -> None:
 
 def _welded(corners: Points, faces: Indices) -> tuple[Points, Indices]:
     """Vertices and quads with corners in exactly the same place made one; the first one stays."""
-    _, first, number = np.unique(corners, axis=0, return_index=True, return_inverse=True)
+    places = corners + 0.0  # no negative noughts
+    _, first, number = np.unique(places, axis=0, return_index=True, return_inverse=True)
     kept = np.sort(first)
     return corners[kept], np.searchsorted(kept, first[number.ravel()])[faces]

@@ -122,6 +122,24 @@ def test_corners_that_rhino_keeps_apart_in_one_place_are_one_vertex(mesh, tmp_pa
     gs.require_sound(found)
 
 
+def test_noughts_of_either_sign_are_one_place(tmp_path):
+    places = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [-1, 0, 0], [-0.0, -0.0, -0.0]]
+    faces = [[0, 1, 2, 3], [4, 5, 3, 6]]
+    made = rhino_mesh([*places, [-1, 1, 0]], faces)
+    assert len(gs.read_mesh(write_rhino(tmp_path / "a.3dm", made)).vertices) == 6
+
+
+def test_meshes_inside_blocks_do_not_count(mesh, tmp_path):
+    file = rhino3dm.File3dm()
+    one = rhino_mesh(mesh.vertices, mesh.quads)
+    attributes = rhino3dm.ObjectAttributes()
+    origin = rhino3dm.Point3d(0, 0, 0)
+    file.InstanceDefinitions.Add("block", "", "", "", origin, (one,), (attributes,))
+    file.Objects.AddMesh(one, attributes)
+    file.Write(str(tmp_path / "a.3dm"), 7)
+    assert same(gs.read_mesh(tmp_path / "a.3dm"), mesh)
+
+
 @pytest.mark.parametrize("corner", range(0, 80, 7))
 def test_corners_that_are_only_near_are_not_welded_but_refused(corner, mesh, tmp_path):
     apart = mesh.vertices[mesh.quads].reshape(-1, 3).copy()
