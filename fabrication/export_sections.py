@@ -6,7 +6,7 @@ from typing import Literal
 
 from fabrication.section_types import Section
 
-Format = Literal["glb", "ply", "obj", "3dm", "ifc"]
+Format = Literal["glb", "ply", "obj", "3dm", "ifc", "nc1", "btlx"]
 
 
 class ExportSection(Section):

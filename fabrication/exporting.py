@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from fabrication.export.btlx.files import write_btlx
+from fabrication.export.cut_sets import CutSet
 from fabrication.export.interchange.ifc import write_ifc
 from fabrication.export.interchange.meshes import write_glb, write_obj_groups, write_ply
 from fabrication.export.interchange.missing import required
 from fabrication.export.interchange.model import Model
 from fabrication.export.interchange.rhino import write_3dm
+from fabrication.export.nc1.files import write_nc1
 from fabrication.export_sections import ExportSection
 
 FORMATS: dict[str, Callable[[Path, Model], None]] = {
@@ -19,6 +22,14 @@ FORMATS: dict[str, Callable[[Path, Model], None]] = {
     "3dm": write_3dm,
     "ifc": write_ifc,
 }
+"""Of everything that is built, where it stands."""
+
+FILES = (
+    *(f"export/structure.{form}" for form in FORMATS),
+    *("export/structure.btlx", "export/nc1/*.nc1", "export/nc1/index.csv"),
+)
+"""Patterns of all files that may come."""
+
 _LIBRARIES = {"3dm": "rhino3dm", "ifc": "ifcopenshell"}
 
 
@@ -35,18 +46,26 @@ def require_formats(formats: Sequence[str]) -> None:
             required(_LIBRARIES[form], form)
 
 
-def write_exports(draft: Path, section: ExportSection | None, model: Callable[[], Model]) -> None:
-    """Write ``export/structure.glb`` and so on, where the project asks for any.
+def write_exports(
+    draft: Path,
+    section: ExportSection | None,
+    name: str,
+    model: Callable[[], Model],
+    cut: Callable[[], Sequence[CutSet]],
+) -> None:
+    """Write ``export/structure.glb``, ``export/nc1/A1.nc1`` and so on, where there are to be any.
 
     Parameters
     ----------
     draft : the package's folder.
-    model : makes what is written; not called where nothing is.
+    name : of the project.
+    model, cut : make what is written: bodies in their places, flat parts. Not called where nothing
+        of the kind is.
 
     Raises
     ------
     SettingError
-        For a format whose library is missing.
+        For a format whose library is missing, or that cannot hold what is built.
     OutputError
         When a file cannot be written.
     """
@@ -54,6 +73,15 @@ def write_exports(draft: Path, section: ExportSection | None, model: Callable[[]
         return
     folder = draft / "export"
     folder.mkdir(parents=True, exist_ok=True)
-    made = model()
-    for form in dict.fromkeys(section.formats):
-        FORMATS[form](folder / f"structure.{form}", made)
+    formats = dict.fromkeys(section.formats)
+    placed = [form for form in formats if form in FORMATS]
+    if placed:
+        made = model()
+        for form in placed:
+            FORMATS[form](folder / f"structure.{form}", made)
+    if len(placed) < len(formats):
+        sets = cut()
+        if "nc1" in formats:
+            write_nc1(folder / "nc1", name, sets)
+        if "btlx" in formats:
+            write_btlx(folder / "structure.btlx", name, sets)

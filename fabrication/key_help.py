@@ -90,7 +90,7 @@ KEYS: dict[str, dict[str, str]] = {
         "seam": "mm that strips of neighbours keep",
         "hang": "list the nodes upside down, as a segment is put together",
     },
-    "export": {"formats": "of glb, ply, obj (meshes), 3dm (Rhino), ifc (IFC4)"},
+    "export": {"formats": "of glb, ply, obj, 3dm (Rhino), ifc (IFC4), nc1 (steel), btlx (timber)"},
     "remesh": {
         "directions": "asymptotic for strips; principal or conjugate for panels",
         "angle": "degrees between conjugate directions",

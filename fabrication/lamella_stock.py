@@ -24,7 +24,7 @@ from fabrication.splice_plan import SplicePlan, Splices, preferred, tradeoff
 from fabrication.splice_plate import Sides, SplicePlate
 from fabrication.splice_search import Run
 from fabrication.splices import runs_of, splice_plates, spliced
-from fabrication.stock import Profile, Sheet
+from fabrication.stock import Material, Profile, Sheet
 
 _WISHES = {
     "few-splices": Splices.FEW,
@@ -33,8 +33,8 @@ _WISHES = {
 }
 
 
-BAR = "bar"
-"""Prefix of the files of bars."""
+BAR, COUPON = "bar", "coupon"
+"""Prefixes of the files of bars and coupons."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class SheetSet:
     """
 
     prefix: str
-    material: str
+    material: Material
     sheets: tuple[NestedSheet, ...]
     bound: int
 
@@ -56,6 +56,11 @@ class SheetSet:
     def of_bars(self) -> bool:
         """Whether these are bars, as wide as what is cut from them."""
         return self.prefix == BAR
+
+    @property
+    def kind(self) -> str:
+        """What the parts are."""
+        return "strips" if self.prefix in (BAR, "sheet") else self.prefix
 
     def figures(self) -> Report:
         """For the report."""
@@ -154,7 +159,7 @@ def strip_sheets(
     parts: Sequence[FlatPart], project: Project, profile: Profile, bars: BarStock | None
 ) -> SheetSet:
     """The strips of all copies on their sheets, or on the bars of the plan."""
-    material = profile.material.name
+    material = profile.material
     if bars is None:
         sheet, every = sheet_of(project.sheet), [*parts] * copies_of(project)
         return SheetSet("sheet", material, nest(every, sheet), sheet_bound(every, sheet))
@@ -177,19 +182,19 @@ def other_sheets(
     """Connectors that are cut from sheet, splice plates and coupons, each on sheets of its own."""
     sheet, copies = sheet_of(project.panel_sheet or project.sheet), copies_of(project)
     for kind in jointed.connectors:
-        if kind.from_sheet and kind.bodies:
+        if kind.from_sheet and kind.bodies and kind.material is not None:
             yield _nested(kind.name.replace(" ", "-"), kind.material, _pieces(kind) * copies, sheet)
     if bars is not None and bars.plate is not None and bars.plan.splices:
         plates = [*splice_plates(bars.plan, bars.plate)] * copies
-        yield _nested("splices", bars.plate.material.name, plates, sheet)
+        yield _nested("splices", bars.plate.material, plates, sheet)
     if coupons:
-        material = jointed.strips.profile.material.name
-        yield _nested("coupon", material, coupons, sheet_of(project.sheet))
+        material = jointed.strips.profile.material
+        yield _nested(COUPON, material, coupons, sheet_of(project.sheet))
 
 
 def _pieces(kind: Prisms) -> list[SheetPart]:
     return [shape_piece(body.mark, kind.shapes[body.shape]) for body in kind.bodies]
 
 
-def _nested(prefix: str, material: str, parts: Sequence[SheetPart], sheet: Sheet) -> SheetSet:
+def _nested(prefix: str, material: Material, parts: Sequence[SheetPart], sheet: Sheet) -> SheetSet:
     return SheetSet(prefix, material, nest(parts, sheet), sheet_bound(parts, sheet))

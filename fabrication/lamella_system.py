@@ -10,6 +10,7 @@ from pathlib import Path
 import gridshell as gs
 from fabrication.assembling import Assembly
 from fabrication.errors import KernelError
+from fabrication.export.cut_sets import CutSet, cut_set
 from fabrication.export.interchange.model import Model, lamella_model
 from fabrication.export.quality_series import Series
 from fabrication.export.step_prism_reader import StepCopy, StepPrism
@@ -23,7 +24,7 @@ from fabrication.joint_sections import SlottedJoint
 from fabrication.jointed import Jointed
 from fabrication.kernel_job import Kernel, KernelResult, LamellaWork
 from fabrication.lamella_sections import PapersSection
-from fabrication.lamella_stock import BarStock, SheetSet
+from fabrication.lamella_stock import COUPON, BarStock, SheetSet
 from fabrication.moving import Moving
 from fabrication.parts import FlatPart
 from fabrication.placing import keyed
@@ -127,7 +128,9 @@ class LamellaSystem:
             self._write_lists(draft)
         with clock.stage("papers"):
             self._write_papers(draft)
-            write_exports(draft, self.project.export, self._model)
+            write_exports(
+                draft, self.project.export, self.project.name, self._model, self._cut_sets
+            )
         with clock.stage("solids"):
             solid = self._solids(cad)
         with clock.stage("closure"):
@@ -219,7 +222,7 @@ class LamellaSystem:
                 own.sheets,
                 folder,
                 name=self.project.name,
-                material=own.material,
+                material=own.material.name,
                 prefix=own.prefix,
                 process=self.process,
             )
@@ -240,6 +243,11 @@ class LamellaSystem:
         more = None if self.facade is None else self.facade.bodies
         model = lamella_model(self.project.name, self.jointed, self.parts, more)
         return model if self.segmented is None else model.repeated(self.segmented.segments.poses)
+
+    def _cut_sets(self) -> list[CutSet]:
+        """All flat parts but the coupons, by material, for machines."""
+        own = [one for one in self.sheets if one.prefix != COUPON]
+        return [cut_set(one.kind, one.material, one.sheets) for one in own]
 
     def _write_lists(self, draft: Path) -> None:
         from fabrication.export.assembly_schedule import write_assembly

@@ -17,6 +17,11 @@ from fabrication.sizes import require_positive
 _ISOTROPIC = 2.6
 """Young's over shear modulus of a metal: 2 (1 + 0.3)."""
 
+_STEEL_MODULUS, _STEEL = 170_000.0, (7500.0, 8200.0)
+"""N/mm2 and kg/m3: all structural and stainless steels, no cast iron, brass, titanium."""
+_TIMBER, _TIMBER_DENSITY = (2_000.0, 30_000.0), 1100.0
+"""N/mm2 and kg/m3: from fibre board to the hardest woods, no fibre plastics."""
+
 
 @dataclass(frozen=True)
 class Material:
@@ -62,6 +67,16 @@ class Material:
         if self.shear_strength is None:
             return self.strength / float(np.sqrt(3.0))
         return self.shear_strength
+
+    @property
+    def is_steel(self) -> bool:
+        """Whether it is steel, told by its numbers: own materials have names of any kind."""
+        return self.modulus >= _STEEL_MODULUS and min(_STEEL) <= self.density <= max(_STEEL)
+
+    @property
+    def is_timber(self) -> bool:
+        """Whether it is wood or a board of it, told by its numbers."""
+        return min(_TIMBER) <= self.modulus <= max(_TIMBER) and self.density <= _TIMBER_DENSITY
 
 
 S235 = Material("S235", modulus=210_000.0, strength=235.0, density=7850.0)

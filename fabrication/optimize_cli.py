@@ -60,7 +60,10 @@ _USUAL = {Net.ASYMPTOTIC: On.DIAGONALS, Net.PLANAR: On.WHITE, Net.SYMMETRIC: On.
 
 
 def optimize(
-    mesh: Annotated[Path, typer.Argument(metavar="IN.obj", help="Any quad mesh.")],
+    mesh: Annotated[
+        Path,
+        typer.Argument(metavar="IN", help="Any quad mesh: OBJ, .3dm of Rhino, JSON of COMPAS."),
+    ],
     unit: Annotated[str, typer.Option(help="Unit of the files: mm, cm, m, inch, foot.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="OUT.obj", help="The exact net.")],
     net: Annotated[Net, typer.Option(help="Kind of net.")] = Net.ASYMPTOTIC,

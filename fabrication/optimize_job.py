@@ -29,7 +29,7 @@ class OptimizeJob:
 
     Parameters
     ----------
-    mesh, unit : the input file and the unit of both mesh files.
+    mesh, unit : the input file, as `read_mesh` reads it, and the unit of both mesh files.
     planarity : what shall be flat.
     angle : none leaves it free; two angles make a field from the centre to the outermost quad.
     formula : of x, y, z and r in mm, in place of an angle.
@@ -137,7 +137,7 @@ def write_result(result: OptimizeResult, job: OptimizeJob, out: Path, report: Pa
 
 
 def _read(job: OptimizeJob) -> gs.ControlMesh:
-    mesh = gs.read_obj(job.mesh, unit=job.unit)
+    mesh = gs.read_mesh(job.mesh, unit=job.unit)
     own = job.planarity in (gs.Planarity.EDGE_STARS, gs.Planarity.FACES)
     angled = job.angle or job.formula is not None or job.between is not None
     if own and not angled and not job.rhombus and not job.square:

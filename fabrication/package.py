@@ -18,7 +18,9 @@ import numpy as np
 import gridshell as gs
 from fabrication.delivery import draft_folder, move_in
 from fabrication.export.quality_series import Series, net_series
-from fabrication.exporting import FORMATS, require_formats
+from fabrication.export_settings import require_formats_fit
+from fabrication.exporting import FILES as EXPORTS
+from fabrication.exporting import require_formats
 from fabrication.finding import Finding
 from fabrication.kernel_job import Kernel, kernel
 from fabrication.lamella_route import LamellaRoute
@@ -48,7 +50,7 @@ _STALE = (
     *(f"{name}.csv" for name in ("assembly", "bars", "bays", "beams", "bill", "flat")),
     *(f"{name}.csv" for name in ("drillings", "hanging", "motion")),
     *("motion.glb", "motion.html"),
-    *(f"export/structure.{form}" for form in FORMATS),
+    *EXPORTS,
     *(f"{name}.pdf" for name in ("drawings", "labels", "templates")),
 )
 
@@ -104,6 +106,8 @@ def run(
     clock = Clock(announce)
     if project.export is not None:
         require_formats(project.export.formats)
+        with keyed("export"):
+            require_formats_fit(project)
     route = route_of(project)
     with draft_folder(out, names=(*FILES, *route.files)) as draft, kernel() as cad:
         design = _design(project, route, Path(folder), clock)

@@ -13,6 +13,7 @@ from fabrication.angle_settings import angle_of
 from fabrication.beam_layout import Beam, BeamSection, beams
 from fabrication.bodies import structure_bodies
 from fabrication.errors import KernelError
+from fabrication.export.cut_sets import CutSet, cut_set
 from fabrication.export.interchange.model import bodies_model
 from fabrication.export.quality_series import Series
 from fabrication.exporting import write_exports
@@ -136,7 +137,11 @@ class PanelNetSystem:
                 write_beam_schedule(draft / "beams.csv", self.beams)
             drawn = [part for path in files for part in read_dxf(path)]
             write_exports(
-                draft, self.project.export, lambda: bodies_model(self.project.name, self.bodies)
+                draft,
+                self.project.export,
+                self.project.name,
+                lambda: bodies_model(self.project.name, self.bodies),
+                self._cut_sets,
             )
         with clock.stage("solids"):
             solid = self._solids(cad)
@@ -208,6 +213,16 @@ class PanelNetSystem:
             raise KernelError(
                 error.what, where=error.where, value=error.value, limit=error.limit, advice=advice
             ) from None
+
+    def _cut_sets(self) -> list[CutSet]:
+        """Flat panels, plates and stars by material, for machines."""
+        system = self.built.system
+        found = [cut_set("panels", system.panels.material, self.panel_sheets)]
+        if system.plates is not None:
+            found.append(cut_set("plates", system.plates.material, self.plate_sheets))
+        if system.connector_material is not None:
+            found.append(cut_set("stars", system.connector_material, self.star_sheets))
+        return found
 
     def _write_sheets(self, folder: Path) -> list[Path]:
         from fabrication.export.dxf import write_dxf

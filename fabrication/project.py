@@ -21,6 +21,7 @@ from fabrication.angle_sections import ANGLE_CHOICES, FieldSection, MirrorSectio
 from fabrication.angle_settings import require_angle
 from fabrication.errors import ProjectError
 from fabrication.export_sections import ExportSection
+from fabrication.export_settings import require_export
 from fabrication.joint_sections import (
     BlocksSection,
     CleatSection,
@@ -109,6 +110,7 @@ def project_of(document: Mapping[str, Any], path: Path) -> Project:
     require_makeable(project, path)
     require_angle(project, path)
     require_panels(project, path)
+    require_export(project, path)
     return project
 
 

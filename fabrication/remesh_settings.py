@@ -1,11 +1,11 @@
-"""Whether ``[surface]`` with a file and ``[remesh]`` go together, told without reading the file."""
+"""Whether a file and what is asked of it go together, told without reading the file."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from fabrication.errors import ProjectError
-from fabrication.source_sections import RemeshSection, RemeshSource
+from fabrication.source_sections import MeshSection, RemeshSection, RemeshSource
 
 FORMATS = (
     *(".obj", ".ply", ".stl", ".glb", ".csv", ".txt", ".xyz"),
@@ -13,7 +13,28 @@ FORMATS = (
 )
 """Endings of the surface files that can be read."""
 
+MESHES = (".obj", ".3dm", ".json")
+"""Endings of the files of quad meshes that can be read."""
+
 _STATE_UNIT = (".step", ".stp", ".iges", ".igs")
+
+
+def require_mesh(source: MeshSection, path: Path) -> None:
+    """Refuse a mesh file that is not there, of no known kind, or without the unit it needs.
+
+    Parameters
+    ----------
+    path : the project file; the mesh is looked for beside it.
+
+    Raises
+    ------
+    ProjectError
+        Naming the file and the key.
+    """
+    require_file(source.file, "mesh", path, "mesh.file")
+    suffix = _known_ending(source.file, "mesh", MESHES, path)
+    if source.unit is None and suffix != ".3dm":
+        raise _missing_unit("mesh", "only .3dm files state their own", path)
 
 
 def require_remeshable(source: RemeshSource, path: Path, *, kind: str) -> None:
@@ -29,21 +50,11 @@ def require_remeshable(source: RemeshSource, path: Path, *, kind: str) -> None:
     ProjectError
         Naming the file and the key.
     """
-    surface, suffix = source.surface, Path(source.surface.file).suffix.lower()
+    surface = source.surface
     require_file(surface.file, "surface", path, "surface.file")
-    if suffix not in FORMATS:
-        raise ProjectError(
-            "The surface file has an ending that is not known",
-            where=f"{path}, surface.file",
-            value=repr(suffix),
-            limit=", ".join(FORMATS),
-        )
+    suffix = _known_ending(surface.file, "surface", FORMATS, path)
     if surface.unit is None and suffix not in _STATE_UNIT:
-        raise ProjectError(
-            "A key is missing",
-            where=f"{path}, surface.unit",
-            advice="add surface.unit: only STEP and IGES files state their own",
-        )
+        raise _missing_unit("surface", "only STEP and IGES files state their own", path)
     _require_consistent(source.remesh, path)
     for number, guide in enumerate(source.remesh.guides):
         require_file(guide.file, "guide", path, f"remesh.guides.{number}.file")
@@ -64,6 +75,27 @@ def require_remeshable(source: RemeshSource, path: Path, *, kind: str) -> None:
             limit="principal, conjugate",
             advice="'principal': at right angles support plates are flat",
         )
+
+
+def _known_ending(name: str, section: str, known: tuple[str, ...], path: Path) -> str:
+    """The ending of a file, in small letters; raises ProjectError for an unknown one."""
+    suffix = Path(name).suffix.lower()
+    if suffix not in known:
+        raise ProjectError(
+            f"The {section} file has an ending that is not known",
+            where=f"{path}, {section}.file",
+            value=repr(suffix),
+            limit=", ".join(known),
+        )
+    return suffix
+
+
+def _missing_unit(section: str, why: str, path: Path) -> ProjectError:
+    return ProjectError(
+        "A key is missing",
+        where=f"{path}, {section}.unit",
+        advice=f"add {section}.unit: {why}",
+    )
 
 
 def require_file(name: str, kind: str, path: Path, key: str) -> None:

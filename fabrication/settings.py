@@ -16,7 +16,7 @@ from fabrication.errors import ProjectError
 from fabrication.joint_sections import JointSection, SlottedJoint
 from fabrication.motion_sections import UmbrellaSection
 from fabrication.placing import placed
-from fabrication.remesh_settings import require_file, require_remeshable
+from fabrication.remesh_settings import require_mesh, require_remeshable
 from fabrication.section_types import MOST_NODES, MaterialSection
 from fabrication.sections import ProfileSection, Project, SheetSection
 from fabrication.source_sections import (
@@ -118,7 +118,7 @@ def require_makeable(project: Project, path: Path) -> None:
         with placed(path, "umbrella"):
             position_of(source)
     elif isinstance(source, MeshSection):
-        require_file(source.file, "mesh", path, "mesh.file")
+        require_mesh(source, path)
     elif isinstance(source, RemeshSource):
         require_remeshable(source, path, kind=project.net.kind)
     else:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fabrication.grouping import Group, instance_frame
+from fabrication.materials import Material
 from fabrication.outlines import Frame, outline_area
 from gridshell.arrays import Floats
 
@@ -82,7 +83,7 @@ class Prisms:
 
     Parameters
     ----------
-    material : what they are made of, for lists; empty where it is told elsewhere.
+    material : what they are made of; None where it is told elsewhere.
     from_sheet : whether the shapes are cut from sheet as thick as they are high.
     """
 
@@ -90,7 +91,7 @@ class Prisms:
     colour: Colour
     shapes: tuple[Shape, ...]
     bodies: tuple[Body, ...]
-    material: str = ""
+    material: Material | None = None
     from_sheet: bool = False
 
 

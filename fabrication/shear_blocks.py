@@ -196,7 +196,7 @@ def _prisms(spec: ShearBlock, width: float, kept: Sequence[tuple[str, Frame, flo
         Shape(f"block {t:g}", _rectangle(half, t / 2.0), -height / 2.0, height / 2.0) for t in sizes
     )
     bodies = tuple(Body(mark, sizes.index(round(float(t), 6)), frame) for mark, frame, t in kept)
-    return Prisms("shear blocks", COLOUR, shapes, bodies, spec.material.name)
+    return Prisms("shear blocks", COLOUR, shapes, bodies, spec.material)
 
 
 def _rectangle(x: float, y: float) -> Floats:

@@ -165,7 +165,7 @@ class MeshSection(Section):
     """A quad mesh from a file: its edges or its diagonals become the net."""
 
     file: str
-    unit: UnitName
+    unit: Annotated[UnitName | None, Field(description="the one a .3dm file states")] = None
     lamellas_along: Annotated[
         Literal["edges", "diagonals"] | None, Field(description="of asymptotic nets only")
     ] = None

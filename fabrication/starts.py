@@ -61,7 +61,13 @@ def start(project: Project, folder: Path, stage: Stage) -> Start:
 
 
 def _of_mesh(section: MeshSection, folder: Path, *, planar: bool) -> Start:
-    mesh = gs.read_obj(folder / section.file, unit=gs.Unit.named(section.unit))
+    unit = None if section.unit is None else gs.Unit.named(section.unit)
+    try:
+        mesh = gs.read_mesh(folder / section.file, unit=unit)
+    except gs.UnitError as error:
+        raise _at("mesh.unit", error) from None
+    except gs.SettingError as error:
+        raise _at("mesh.file", error) from None
     control = gs.control_mesh(mesh) if section.along == "edges" else gs.as_control_mesh(mesh)
     gs.require_sound(mesh)
     if not planar:

@@ -11,7 +11,7 @@ The pipeline, in the paper's words (Jiang, Wang, Schling and Pottmann, AAG 2020)
 
 A surface from a file comes by ``read_design``; ``quadrangulate`` lays a quad mesh over it along two
 families of directions, and its ``control()`` is the control mesh, its ``reference`` the surface.
-A quad mesh drawn elsewhere enters through ``read_obj`` and ``as_control_mesh`` (its diagonals
+A quad mesh drawn elsewhere enters through ``read_mesh`` and ``as_control_mesh`` (its diagonals
 become the net) or ``control_mesh`` (its edges do). Lengths are mm, angles radians, arrays frozen.
 """
 

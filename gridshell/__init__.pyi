@@ -92,8 +92,10 @@ from .io import (
     Unit as Unit,
 )
 from .io import read_brep as read_brep
+from .io import read_compas as read_compas
 from .io import read_curves as read_curves
 from .io import read_design as read_design
+from .io import read_mesh as read_mesh
 from .io import (
     read_net as read_net,
 )
@@ -101,6 +103,7 @@ from .io import (
     read_obj as read_obj,
 )
 from .io import read_polylines as read_polylines
+from .io import read_rhino as read_rhino
 from .io import read_state as read_state
 from .io import read_surface as read_surface
 from .io import states_unit as states_unit

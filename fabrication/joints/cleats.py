@@ -101,7 +101,7 @@ def cleats(cleat: Cleat, design: Structure, ends: Ends, marks: list[str]) -> Pri
             frame = Frame(origin, leg, unit(side * np.sign(side @ along)))
             mark = f"{marks[int(ends.span[row])]}-{design.nodes[node].name}{name}"
             bodies.append(Body(mark, shapes[key], frame))
-    return Prisms("angle cleats", _COLOUR, tuple(made), tuple(bodies), cleat.material.name)
+    return Prisms("angle cleats", _COLOUR, tuple(made), tuple(bodies), cleat.material)
 
 
 def cleat_lines(cleat: Cleat, made: Prisms) -> Iterator[BillLine]:

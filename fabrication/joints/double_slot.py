@@ -199,7 +199,7 @@ class DoubleSlotJoint(Joint):
             _WASHER_COLOUR,
             tuple(made),
             tuple(bodies),
-            washer.material.name,
+            washer.material,
             from_sheet=True,
         )
 

@@ -112,8 +112,7 @@ def stud_prisms(
             outline = rhombus(float(size), float(angle))
             made.append(Shape(f"S{len(made) + 1}", outline, -length / 2.0, length / 2.0, inside))
         bodies.append(Body(f"{node.name}-stud", shapes[key], frame))
-    material = stud.material.name
-    return Prisms("studs", _COLOUR, tuple(made), tuple(bodies), material)
+    return Prisms("studs", _COLOUR, tuple(made), tuple(bodies), stud.material)
 
 
 def stud_lines(stud: Stud, studs: Prisms, *, length: float, hole: float) -> Iterator[BillLine]:

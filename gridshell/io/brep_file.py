@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
-from gridshell.errors import UnitError
 from gridshell.io.obj import Unit
+from gridshell.io.units import require_same_unit, required_unit
 from gridshell.surface import BrepSurface
 
 
@@ -56,28 +55,6 @@ def load_with_scale(path: Path, unit: Unit | None) -> tuple[Any, float]:
 
     shape, own = load_shape(path)
     if not own:
-        if unit is None:
-            raise UnitError(
-                "A BREP file states no unit",
-                where=str(path),
-                limit=", ".join(u.name.lower() for u in Unit),
-                advice="give the unit the file was drawn in",
-            )
-        return shape, unit.value
-    odd = [size for size in own if not (unit is None or math.isclose(size, unit.value))]
-    if odd and unit is not None:
-        raise UnitError(
-            "The unit given contradicts the file's own",
-            where=str(path),
-            value=f"{unit.name.lower()}; the file says {_name(odd[0])}",
-            advice="leave the unit out: the file states it",
-        )
+        return shape, required_unit(path, unit, "A BREP file").value
+    require_same_unit(path, unit, own)
     return shape, 1.0
-
-
-def _name(size: float) -> str:
-    """The unit of *size* mm."""
-    for unit in Unit:
-        if math.isclose(size, unit.value):
-            return unit.name.lower()
-    return "an unknown unit" if math.isnan(size) else f"{size:.6g} mm"

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from gridshell.arrays import Indices, Points
-from gridshell.errors import InputError, UnitError
+from gridshell.errors import InputError
 from gridshell.io.brep_file import load_with_scale, patch_of
 from gridshell.io.curve_file import KERNEL, loops_of, read_curves
 from gridshell.io.obj import Unit
 from gridshell.io.surface_file import read_triangles
+from gridshell.io.units import required_unit
 from gridshell.surface import BrepSurface, TriangulatedSurface, minimal_surface, sound_mesh
 
 _STATE_UNIT = (".step", ".stp", ".iges", ".igs")
@@ -60,13 +61,7 @@ def read_design(
         if has_faces(shape):
             return patch_of(shape, scale)
         return _spanned(loops_of(path, shape, scale), triangles)
-    if unit is None:
-        raise UnitError(
-            "The surface file states no unit",
-            where=str(path),
-            limit=", ".join(u.name.lower() for u in Unit),
-            advice="give the unit the file was drawn in",
-        )
+    unit = required_unit(path, unit, "The surface file")
     if suffix in _TEXT or (suffix == ".obj" and _only_lines(path)):
         return _spanned(read_curves(path, unit=unit), triangles)
     return _triangulated(*read_triangles(path, unit=unit))

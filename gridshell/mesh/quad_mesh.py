@@ -173,7 +173,8 @@ class QuadMesh:
                 where=f"vertex {v} {position(self.vertices[v])}",
                 value=f"{self.valence[v]} quads in more than one fan",
                 limit="one fan",
-                advice="split the vertex, remove what touches only there, or mend a T-junction",
+                advice="split the vertex, remove what touches only there, mend a T-junction, or "
+                "weld vertices that lie almost in one place",
             )
 
 

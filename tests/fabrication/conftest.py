@@ -320,3 +320,27 @@ def bodies_file(tmp_path_factory: pytest.TempPathFactory) -> Callable[[PanelStru
         return written[id(built)]
 
     return write
+
+
+@pytest.fixture(scope="session")
+def in_program():
+    """Writes a quad mesh in metres as Rhino (.3dm) or COMPAS (.json) do."""
+    import rhino3dm
+    from compas.datastructures import Mesh
+
+    def write(path, mesh):
+        metres, quads = (mesh.vertices / 1e3).tolist(), mesh.quads.tolist()
+        if path.suffix == ".json":
+            Mesh.from_vertices_and_faces(metres, quads).to_json(str(path))
+            return
+        file, made = rhino3dm.File3dm(), rhino3dm.Mesh()
+        file.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
+        made.Vertices.UseDoublePrecisionVertices = True
+        for row in metres:
+            made.Vertices.AddPoint3d(*row)
+        for quad in quads:
+            made.Faces.AddFace(*quad)
+        file.Objects.AddMesh(made, rhino3dm.ObjectAttributes())
+        assert file.Write(str(path), 7)
+
+    return write

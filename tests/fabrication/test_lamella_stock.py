@@ -29,7 +29,7 @@ def jointed(catenoid):
 
 def test_strips_lie_on_sheets_with_the_bound_of_their_area(jointed, profile):
     found = strip_sheets(parts_of(jointed), PROJECT, profile, None)
-    assert (found.prefix, found.material) == ("sheet", "stainless")
+    assert (found.prefix, found.material.name) == ("sheet", "stainless")
     assert len(found.sheets) >= found.bound >= 1
     assert found.figures()["sheets"] == len(found.sheets)
 
@@ -57,7 +57,7 @@ def test_plates_of_splices_and_washers_get_sheets_of_their_own(catenoid, profile
     stock = bar_stock(double, BarsSection(length=2500.0, splice=SpliceSection(length=120.0)))
     sets = {own.prefix: own for own in other_sheets(double, PROJECT, stock)}
     assert set(sets) == {"star-washers", "splices"}
-    assert sets["star-washers"].material == "S235"
+    assert sets["star-washers"].material.name == "S235"
     count = sum(len(sheet.placements) for sheet in sets["splices"].sheets)
     assert count == 2 * stock.plan.count
 

@@ -6,7 +6,7 @@ import pytest
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.materials import MATERIALS
+from fabrication.materials import MATERIALS, Material
 from fabrication.section_types import SheetName
 
 
@@ -47,3 +47,15 @@ def test_wood_has_its_own_shear_values():
 def test_known_strips_bend_as_tightly_as_shops_say(material, thickness, metres):
     radius = material.modulus * thickness / (2.0 * material.strength)
     assert radius / 1e3 == pytest.approx(metres, abs=0.005)
+
+
+def test_steel_and_timber_are_told_by_their_numbers():
+    steel = {name for name, material in MATERIALS.items() if material.is_steel}
+    timber = {name for name, material in MATERIALS.items() if material.is_timber}
+    assert steel == {"S235", "S355", "stainless"}
+    assert timber == {"birch-ply", "poplar-ply"}
+    assert Material("corten", 210e3, 355.0, 7850.0).is_steel
+    assert Material("spruce", 11e3, 24.0, 420.0).is_timber
+    for other in (Material("titanium", 110e3, 800.0, 4430.0), Material("PE", 1e3, 20.0, 950.0)):
+        assert not other.is_steel
+        assert not other.is_timber

@@ -51,6 +51,18 @@ def dome(x, y):
     return -0.3 * x * x - 0.2 * y * y
 
 
+@pytest.mark.parametrize("suffix", ["3dm", "json"])
+def test_a_net_of_rhino_or_compas_becomes_exact(command, mesh, suffix, in_program, tmp_path):
+    start = mesh(saddle, noise=0.01)
+    in_program(tmp_path / f"in.{suffix}", start)
+    rest = ("--unit", "m", "--angle", 90, "--out")
+    assert command(f"in.{suffix}", *rest, "a.obj")[0] == 0
+    assert command("in.obj", *rest, "b.obj")[0] == 0
+    a, b = (gs.read_obj(tmp_path / name, unit=gs.Unit.M) for name in ("a.obj", "b.obj"))
+    assert a.quads.tolist() == b.quads.tolist()
+    assert np.abs(a.vertices - b.vertices).max() < 1e-6
+
+
 def test_a_noisy_net_becomes_exact_in_its_own_unit_and_numbering(command, mesh, tmp_path):
     start = mesh(saddle, noise=0.01)
     code, out, _ = command(

@@ -446,6 +446,30 @@ def test_edges_of_an_exact_hypar_become_straight_lamellas(tmp_path):
     assert report["structure"]["total_length_m"] > 10.0
 
 
+@pytest.mark.parametrize("suffix", ["3dm", "json"])
+def test_a_mesh_of_rhino_or_compas_gives_the_shell_of_the_same_obj(suffix, in_program, tmp_path):
+    surface, p = gs.Hypar(6000.0), np.linspace(-0.2, 0.2, 5)
+    p, q = np.meshgrid(p, p, indexing="ij")
+    mesh = gs.QuadMesh(surface.asymptotic_point(p.ravel(), q.ravel()), grid_quads(4, 4))
+    in_metres(tmp_path / "roof.obj", mesh)
+    in_program(tmp_path / f"roof.{suffix}", mesh)
+    truth = fab.run(from_mesh("edges"), tmp_path / "truth", folder=tmp_path)
+    report = fab.run(from_mesh("edges", f"roof.{suffix}"), tmp_path / "out", folder=tmp_path)
+    assert report["structure"] == truth["structure"]
+    one, other = (gs.read_net(tmp_path / name / "net.json") for name in ("out", "truth"))
+    assert np.abs(one.vertices - other.vertices).max() < 1e-9
+    assert one.quads.tolist() == other.quads.tolist()
+
+
+@pytest.mark.parametrize(("suffix", "key"), [("3dm", "mm"), ("json", None)])
+def test_a_unit_that_is_wrong_or_missing_names_its_key(suffix, key, in_program, fails, tmp_path):
+    mesh = gs.QuadMesh([[0, 0, 0], [1e3, 0, 0], [1e3, 1e3, 0], [0, 1e3, 50]], [[0, 1, 2, 3]])
+    in_program(tmp_path / f"roof.{suffix}", mesh)
+    source = {"file": f"roof.{suffix}", "unit": key, "lamellas_along": "edges"}
+    error = fails(project(surface=None, patch=None, mesh=source), gs.UnitError)
+    assert error.where.startswith("mesh.unit: ")
+
+
 def test_diagonals_of_an_exact_catenoid_become_lamellas(tmp_path):
     patch = gs.BisectingPatch(v=(-0.4, 0.4), cells=6, u=(0.0, 0.8))
     in_metres(tmp_path / "roof.obj", gs.control_patch(gs.Catenoid(4000.0), patch).mesh)

@@ -123,6 +123,21 @@ def test_a_mesh_that_is_not_there_is_refused(refused, tmp_path):
     assert (where, error.value) == ("mesh.file", str(tmp_path / "roof.obj"))
 
 
+@pytest.mark.parametrize("name", ["roof.obj", "roof.json"])
+def test_a_mesh_whose_file_states_no_unit_needs_one(refused, name, tmp_path):
+    (tmp_path / name).write_text("")
+    mesh = {"file": name, "lamellas_along": "edges"}
+    error, where = refused(mesh=mesh, surface=None, patch=None)
+    assert (where, error.what) == ("mesh.unit", "A key is missing")
+
+
+def test_a_mesh_of_an_unknown_kind_is_refused(refused, tmp_path):
+    (tmp_path / "roof.skp").write_text("")
+    mesh = {"file": "roof.skp", "unit": "m", "lamellas_along": "edges"}
+    error, where = refused(mesh=mesh, surface=None, patch=None)
+    assert (where, error.value) == ("mesh.file", "'.skp'")
+
+
 @pytest.mark.parametrize(
     ("sections", "key"),
     [

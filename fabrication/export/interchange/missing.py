@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
-from gridshell import SettingError
+from gridshell.io.library import required as _required
 
 
 def required(library: str, form: str) -> Any:
@@ -16,12 +15,4 @@ def required(library: str, form: str) -> Any:
     SettingError
         Naming the format that needs it, and how to install it.
     """
-    try:
-        return import_module(library)
-    except ImportError:
-        raise SettingError(
-            f"The format needs the library {library}, which is not installed",
-            where="export.formats",
-            value=form,
-            advice="pip install '.[interchange]', in the folder of gridshell",
-        ) from None
+    return _required(library, needs="The format", where="export.formats", value=form)
