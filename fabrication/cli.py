@@ -195,31 +195,52 @@ def _run_with_progress(project: Any, out: Path, folder: Path, quiet: bool) -> di
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+    from fabrication.time_left import TimeLeft, times_before
+
     console = Console(stderr=True, quiet=quiet)
-    columns = (TextColumn("{task.description:<12}"), BarColumn(), TimeElapsedColumn())
+    left = TimeLeft(times_before(out))
+    columns = (
+        TextColumn("{task.description:<12}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
     silent = quiet or not console.is_terminal
     with Progress(*columns, console=console, transient=True, disable=silent) as progress:
-        task = progress.add_task("loading", total=_STAGES)
+        task = progress.add_task("loading", total=_STAGES, left="")
         from fabrication.package import run as run_package
 
-        def announce(stage: str) -> None:
-            if silent and not quiet:
-                typer.echo(f"gridshell: {stage}", err=True)
-            progress.update(task, advance=1, description=stage)
+        begun: list[str] = []
 
-        return run_package(project, out, folder=folder, announce=announce)
+        def announce(stage: str) -> None:
+            left.begin(stage)
+            if silent and not quiet:
+                words = left.words()
+                typer.echo(f"gridshell: {stage}{f', {words}' if words else ''}", err=True)
+            begun.append(stage)
+            progress.update(
+                task, completed=len(begun), description=stage, left=left.words(), refresh=True
+            )
+
+        def shared(share: float) -> None:
+            left.reach(share)
+            progress.update(task, completed=len(begun) + share, left=left.words())
+
+        return run_package(project, out, folder=folder, announce=announce, shared=shared)
 
 
 def _summary(report: dict[str, Any], out: Path) -> None:
     from rich.console import Console
 
-    from fabrication.summary import summary_lines
+    from fabrication.summary import defaults_line, summary_lines
 
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"[bold]{_plain(report['name'])}[/bold]  {report['net']['status']}")
     for line in summary_lines(report):
         console.print(f"  {line}")
     _print_findings(console, report["findings"])
+    if report.get("defaults"):
+        console.print(f"  [dim]{_plain(defaults_line(report['defaults']))}[/]")
     console.print(f"  {sum(report['timing'].values()):.1f} s; written to {_plain(str(out))}")
 
 

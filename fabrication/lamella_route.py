@@ -178,6 +178,7 @@ class LamellaRoute:
                 cable=None if section.cable is None else gs.Cable(*section.cable),
                 count=section.positions,
                 limits=(smallest, radians(section.largest)),
+                announce=lambda number: clock.shared(number / section.positions),
             )
         return Moving(found, position.opening)
 

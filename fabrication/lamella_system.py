@@ -117,7 +117,7 @@ class LamellaSystem:
         with clock.stage("fit"):
             fitted = fit(jointed.strips, self.parts, jointed.connectors)
         with clock.stage("sheets"):
-            files, faults = self._write_sheets(draft / "sheets")
+            files, faults = self._write_sheets(draft / "sheets", clock)
             drawn = [part for path in files for part in read_dxf(path, self.process)]
             panels = (
                 []
@@ -210,13 +210,14 @@ class LamellaSystem:
 
     # ---- files ---------------------------------------------------------------------------------
 
-    def _write_sheets(self, folder: Path) -> tuple[list[Path], list[Finding]]:
+    def _write_sheets(self, folder: Path, clock: Clock) -> tuple[list[Path], list[Finding]]:
         """Write all sheets; the paths of those with strips, and faults found in any of them."""
         from fabrication.export.dxf import write_dxf
         from fabrication.export.dxf_lint import lint_dxf
 
         strips: list[Path] = []
         faults: list[Finding] = []
+        checked, total = 0, sum(len(own.sheets) for own in self.sheets)
         for own in self.sheets:
             paths = write_dxf(
                 own.sheets,
@@ -231,6 +232,8 @@ class LamellaSystem:
                 drawn = [placement.part for placement in sheet.placements]
                 found = lint_dxf(path, self.process, drawn)
                 faults += [f for f in found if not self._beside_bar(own, f)]
+                checked += 1
+                clock.shared(checked / total)
         return strips, faults
 
     def _beside_bar(self, own: SheetSet, finding: Finding) -> bool:

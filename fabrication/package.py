@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import gridshell as gs
+from fabrication.defaults import defaults_of
 from fabrication.delivery import draft_folder, move_in
 from fabrication.export.quality_series import Series, net_series
 from fabrication.export_settings import require_formats_fit
@@ -29,7 +30,7 @@ from fabrication.net_checks import check_net, off_surface_limit
 from fabrication.panel_route import PanelRoute
 from fabrication.placing import keyed
 from fabrication.remesh_job import Remeshed
-from fabrication.routes import Announce, Clock, Report, Route, System
+from fabrication.routes import Announce, Clock, Report, Route, Shared, System
 from fabrication.sections import NetSection, Project
 from fabrication.starts import Start, start
 
@@ -79,6 +80,7 @@ def run(
     *,
     folder: Path | str = ".",
     announce: Announce = lambda stage: None,
+    shared: Shared = lambda share: None,
 ) -> Report:
     """Design, build and write the package of *project* into *out*.
 
@@ -88,6 +90,7 @@ def run(
     out : created if it is not there; files of an earlier run are replaced, others are kept.
     folder : what file names in the project are relative to.
     announce : called with the name of each stage as it begins.
+    shared : called with how much of a stage is done, 0 to 1, where that is known.
 
     Returns
     -------
@@ -103,7 +106,7 @@ def run(
         When *out* cannot be written.
     """
     out = Path(out)
-    clock = Clock(announce)
+    clock = Clock(announce, shared)
     if project.export is not None:
         require_formats(project.export.formats)
         with keyed("export"):
@@ -153,7 +156,7 @@ def route_of(project: Project) -> Route:
 def _design(project: Project, route: Route, folder: Path, clock: Clock) -> _Design:
     begun = start(project, folder, clock.stage)
     with clock.stage("optimise"):
-        net = net_of(project, route, folder, begun)
+        net = net_of(project, route, folder, begun, solving(project, clock.shared))
         result, quality = net.result, net.quality
     system = route.build(result.control, clock)
     about_net = check_net(result, quality, kept=project.net.keep_to_surface)
@@ -204,6 +207,19 @@ def net_of(
         angles = np.degrees(gs.umbrella_of(result.control).node_angles)
         quality = replace(quality, node_angle_deg=(float(angles.min()), float(angles.max())))
     return FoundNet(recipe, result, quality)
+
+
+def solving(project: Project, shared: Shared) -> gs.Progress:
+    """Tell *shared* how far a solve is: by its residual on the way to the tolerance."""
+    tolerance, first = project.net.tolerance, [0.0]
+
+    def progress(number: int, step: gs.Step) -> None:
+        first[0] = max(first[0], step.unmet)
+        if tolerance < step.unmet < first[0]:
+            by_residual = np.log(first[0] / step.unmet) / np.log(first[0] / tolerance)
+            shared(max(float(by_residual), number / project.net.steps))
+
+    return progress
 
 
 _CAUSES = ("angle-infeasible", "not-integrable")
@@ -270,6 +286,7 @@ def _write(project: Project, design: _Design, draft: Path, cad: Kernel, clock: C
     written = design.system.write(draft, cad, clock)
     report: Report = {
         "name": project.name,
+        "defaults": defaults_of(project),
         **({} if design.remeshed is None else {"remesh": design.remeshed.section()}),
         "net": design.net,
         **written.sections,

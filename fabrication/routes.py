@@ -26,13 +26,21 @@ VOLUME_LIMIT = 20.0
 
 Report = dict[str, Any]
 Announce = Callable[[str], None]
+Shared = Callable[[float], None]
 
 
 @dataclass
 class Clock:
-    """Announces stages and keeps their times."""
+    """Announces stages and keeps their times.
+
+    Parameters
+    ----------
+    announce : hears the name of every stage.
+    shared : hears how much of a stage is done, 0 to 1, where that is known.
+    """
 
     announce: Announce
+    shared: Shared = lambda share: None
     seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager

@@ -96,3 +96,30 @@ def length(metres: float) -> str:
 def mass(kilograms: float) -> str:
     """Kilograms, or grams where it is less than one."""
     return f"{kilograms:.1f} kg" if kilograms >= 1.0 else f"{kilograms * 1e3:.3g} g"
+
+
+_LISTED = 6
+"""Defaults that are named; the rest is counted."""
+
+
+def defaults_line(defaults: Report) -> str:
+    """What was decided because the project does not say, those that matter to a shop first.
+
+    What was left out by default (False, 0) is not named.
+    """
+    decided = [key for key, value in defaults.items() if value]
+    ordered = sorted(decided, key=_rank)
+    named = [f"{key} = {_short(defaults[key])}" for key in ordered[:_LISTED]]
+    more = len(ordered) - len(named)
+    rest = f" and {more} more, see report.json" if more else ""
+    return f"by default: {', '.join(named)}{rest}"
+
+
+def _rank(key: str) -> tuple[int, str]:
+    order = ("joint", "bars", "profile", "panels", "supports", "sheet", "shop", "net")
+    section = key.split(".")[0]
+    return (order.index(section) if section in order else len(order)), key
+
+
+def _short(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

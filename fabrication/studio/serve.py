@@ -6,6 +6,7 @@ import asyncio
 import socket
 import webbrowser
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from fabrication.studio.guard import LOOPBACK, Guard, new_token
@@ -26,7 +27,7 @@ def serve(path: Path, *, port: int | None, browser: bool, told: Callable[[str], 
     ProjectError, SettingError
         When the project cannot be used, or the port is taken.
     """
-    from nicegui import app, ui
+    from nicegui import app
     from starlette.responses import Response
 
     from fabrication.studio.page import Page
@@ -56,6 +57,9 @@ def serve(path: Path, *, port: int | None, browser: bool, told: Callable[[str], 
     async def end() -> None:
         for task in working:
             task.cancel()
+        kept = session.rescue()
+        if kept:
+            told(f"What was not saved is in {kept}.")
 
     app.on_startup(begin)
     app.on_shutdown(end)
@@ -63,11 +67,18 @@ def serve(path: Path, *, port: int | None, browser: bool, told: Callable[[str], 
     def root() -> None:
         Page(session)
 
+    with suppress(KeyboardInterrupt):  # the usual end
+        _run(root, chosen, session.present.project.name)
+
+
+def _run(root: Callable[[], None], port: int, name: str) -> None:
+    from nicegui import ui
+
     ui.run(
         root,
         host=LOOPBACK,
-        port=chosen,
-        title=f"{session.present.project.name} – gridshell",
+        port=port,
+        title=f"{name} – gridshell",
         show=False,
         reload=False,
         tailwind=False,

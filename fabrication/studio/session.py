@@ -225,6 +225,21 @@ class Session:
         self.trouble = ""
         self._tell(Change.STATUS)
 
+    def rescue(self) -> str:
+        """Write what was not saved as a copy, where the studio ends; its name, "" for none."""
+        if not self.unsaved:
+            return ""
+        stem = f"{self.saved.path.stem}-unsaved"
+        names = (f"{stem}{number}.toml" for number in ("", *(f"-{n}" for n in range(2, 100))))
+        name = next((n for n in names if not (self.folder / n).exists()), None)
+        if name is None:
+            return ""
+        try:
+            return write_copy(self.saved, name, self.history.present.document).path.name
+        except GridshellError as error:
+            self._fail(error)
+            return ""
+
     # ---- the package ------------------------------------------------------------------------
 
     async def write_package(self, name: str) -> bool:

@@ -115,7 +115,10 @@ def test_check_lists_every_setting_with_its_value(command, write):
     assert {'name = "small"', "[net]", "[joint]", "clearance = 0.3", "p = [-0.2, 0.2]"} <= bare
     assert all("  # " in line for line in lines if " = " in line and not line.startswith("name"))
     unset = {line.split()[1] for line in lines if line.startswith("#")}
-    assert unset == {"angle", "angle_between", "mirror", "overhang", "supports", "wall"}
+    assert unset == {
+        *("angle", "angle_between", "fairness", "mirror", "overhang", "proximity"),
+        *("supports", "wall"),
+    }
 
 
 def test_what_check_says_is_a_project_that_says_the_same(command, write, tmp_path):

@@ -159,7 +159,11 @@ def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
     here = (host, host.replace("http", "ws", 1), "data:", "blob:")
     assert [line for line in told if not line.startswith(here)] == []
     page.close()
-    assert studio.end()[0] == 130
+    code, said = studio.end()
+    assert code == 0
+    assert "What was not saved is in pavilion-unsaved.toml." in said
+    kept = tomllib.loads((path.parent / "pavilion-unsaved.toml").read_text())
+    assert kept["net"]["angle"] == 65.0
 
 
 def test_a_number_can_be_typed_and_a_wrong_one_is_explained(chromium, studio):

@@ -230,3 +230,16 @@ def test_a_package_that_fails_leaves_nothing(path, monkeypatch):
 
     asyncio.run(turn())
     assert not (path.parent / "package").exists()
+
+
+def test_what_was_not_saved_is_kept_as_a_copy(path):
+    async def turn():
+        async with working(path) as session:
+            assert session.rescue() == ""
+            session.change("net.angle", 62.0, done=True)
+            assert session.rescue() == "pavilion-unsaved.toml"
+            assert session.rescue() == "pavilion-unsaved-2.toml"
+
+    asyncio.run(turn())
+    assert read_project(path.parent / "pavilion-unsaved-2.toml").net.angle == 62.0
+    assert read_project(path).net.angle == 70.0
