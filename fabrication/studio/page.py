@@ -192,7 +192,9 @@ class Page:
     def _status(self) -> None:
         with ui.element("div").classes("gs-status"):
             self._doing = ui.label("").props("data-mark=status")
-            self._bar = ui.linear_progress(0.0, show_value=False).props("color=dark")
+            self._bar = ui.linear_progress(0.0, show_value=False).props(
+                "color=dark instant-feedback"
+            )
             self._bar.classes("w-full").style("max-width: 240px")
         self._told()
 

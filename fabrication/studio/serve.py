@@ -83,6 +83,7 @@ def _run(root: Callable[[], None], port: int, name: str) -> None:
         reload=False,
         tailwind=False,
         show_welcome_message=False,
+        ws_per_message_deflate=False,  # megabytes to this machine itself
     )
 
 

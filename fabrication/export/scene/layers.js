@@ -268,16 +268,11 @@ class Positions extends Faces {
 
 class Lines {
   constructor(THREE, layer) {
-    const points = unpacked(layer.points), pairs = [];
+    const points = unpacked(layer.points);
     Object.assign(this, { THREE, layer, points, parts: [], pickable: [] });
-    let first = 0;
-    for (const count of layer.runs) {
-      for (let n = first; n + 1 < first + count; n += 1) pairs.push(n, n + 1);
-      first += count;
-    }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    geometry.setIndex(pairs);
+    geometry.setIndex(new THREE.BufferAttribute(unpacked(layer.pairs), 1));
     this.materials = [new THREE.LineBasicMaterial({ color: layer.colour })];
     this.objects = [new THREE.LineSegments(geometry, this.materials[0])];
   }

@@ -195,15 +195,23 @@ class Strips(Layer):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Lines(Layer):
-    """Open lines through points (n, 3) m; *counts* points each."""
+    """Straight lines between points (n, 3) m; *pairs* (m, 2) point numbers."""
 
     kind: ClassVar[str] = "lines"
     points: NDArray[np.float32]
-    counts: Sequence[int]
+    pairs: Indices
 
     def arrays(self) -> Packed:
-        """Points, and how many belong to each line."""
-        return {"points": packed(self.points, "f4"), "runs": list(self.counts)}
+        """Points, and which are joined."""
+        return {"points": packed(self.points, "f4"), "pairs": packed(self.pairs, "u4")}
+
+
+def runs_of_pairs(counts: Sequence[int]) -> Indices:
+    """(m, 2) neighbours in lines of so many points each, one line after the other."""
+    numbers = np.arange(sum(counts))
+    last = np.cumsum(counts) - 1
+    first = np.delete(numbers, last)
+    return np.stack([first, first + 1], axis=1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

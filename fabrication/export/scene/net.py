@@ -27,7 +27,6 @@ def net_layers(control: gs.ControlMesh, centre: Floats, *, shown: bool = False) 
     mesh = control.mesh
     first, second = gs.diagonal_meshes(control)
     board = gs.checkerboard(control)
-    edges = on_screen(mesh.vertices[mesh.edges].reshape(-1, 3), centre)
     quads = _quads("control-faces", "Control mesh", mesh.vertices, mesh.quads, centre, _MESH)
     layers: list[Layer] = [
         quads,
@@ -37,24 +36,23 @@ def net_layers(control: gs.ControlMesh, centre: Floats, *, shown: bool = False) 
             colour=_MESH,
             visible=False,
             of_net=True,
-            points=edges,
-            counts=[2] * (len(edges) // 2),
+            points=quads.points,
+            pairs=mesh.edges,
         ),
     ]
-    for family in FAMILY_COLOURS:
-        chosen = first.vertices[first.edges[first.family == family]].reshape(-1, 3)
-        layers.append(
-            Lines(
-                id=f"D1-{family}",
-                name="Net D1",
-                colour=css(FAMILY_COLOURS[family]),
-                visible=shown,
-                of_net=True,
-                points=on_screen(chosen, centre),
-                counts=[2] * (len(chosen) // 2),
-            )
+    vertices = on_screen(first.vertices, centre)
+    layers += [
+        Lines(
+            id=f"D1-{family}",
+            name="Net D1",
+            colour=css(FAMILY_COLOURS[family]),
+            visible=shown,
+            of_net=True,
+            points=vertices,
+            pairs=first.edges[first.family == family],
         )
-    other = second.vertices[second.edges].reshape(-1, 3)
+        for family in FAMILY_COLOURS
+    ]
     layers.append(
         Lines(
             id="D2",
@@ -62,8 +60,8 @@ def net_layers(control: gs.ControlMesh, centre: Floats, *, shown: bool = False) 
             colour=_SECOND,
             visible=False,
             of_net=True,
-            points=on_screen(other, centre),
-            counts=[2] * (len(other) // 2),
+            points=on_screen(second.vertices, centre),
+            pairs=second.edges,
         )
     )
     layers.append(

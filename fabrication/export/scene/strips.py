@@ -15,7 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.export.scene.layers import About, Dots, Labels, Layer, Lines, Strips, on_screen
+from fabrication.export.scene.layers import (
+    About,
+    Dots,
+    Labels,
+    Layer,
+    Lines,
+    Strips,
+    on_screen,
+    runs_of_pairs,
+)
 from fabrication.export.view_meshes import columns
 from fabrication.export.words import fixed, plural
 from fabrication.jointed import Jointed
@@ -176,7 +185,7 @@ def _copies(strips: Structure, copies: Sequence[Frame], centre: Floats) -> Lines
         id="copies",
         name="Other segments",
         points=on_screen(np.concatenate(lines), centre),
-        counts=[len(line) for line in lines],
+        pairs=runs_of_pairs([len(line) for line in lines]),
     )
 
 
@@ -224,7 +233,7 @@ def _node_axes(structure: Structure, centre: Floats) -> Lines:
         colour="#2c7a4b",
         visible=False,
         points=on_screen(ends.reshape(-1, 3), centre),
-        counts=[2] * len(ends),
+        pairs=np.arange(2 * len(ends)).reshape(-1, 2),
     )
 
 
@@ -242,7 +251,7 @@ def axis_layers(points: NDArray[np.float32]) -> list[Layer]:
             name=name,
             built=False,
             points=segments.astype(np.float32),
-            counts=[2, 2, 2],
+            pairs=np.arange(6).reshape(-1, 2),
         ),
         Labels(
             id="axis-names",

@@ -30,6 +30,12 @@ function software() {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
+// A layer, and its objects once they are asked for: what nobody looks at is not made.
+class Entry {
+  constructor(THREE, layer, shown) { Object.assign(this, { THREE, layer, shown, own: null }); }
+  get made() { return (this.own ??= made(this.THREE, this.layer)); }
+}
+
 // library: {THREE, OrbitControls}. pattern(mark): a promise of the SVG of a flat part, or null.
 export function viewer({ THREE, OrbitControls }, root, { pattern = async () => null, chosen = () => {} } = {}) {
   root.classList.add("gv");
@@ -199,8 +205,8 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     pick(null);
     const shown = state.maps.find(({ name }) => name === state.map);
     state.map = shown ? state.map : null;
-    laid();
-    bend(state.bend);
+    lit("under", null);
+    if (state.bend < 1) bend(state.bend);
     listed();
     barred();
     shade();
@@ -208,23 +214,29 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     draw();
   }
 
-  function add(layer, shown) {
-    const own = made(THREE, layer);
-    state.layers.set(layer.id, { layer, made: own, shown });
-    for (const object of own.objects) world.add(object);
-  }
+  function add(layer, shown) { state.layers.set(layer.id, new Entry(THREE, layer, shown)); }
+
+  const ready = () => [...state.layers.values()].filter(({ own }) => own);
 
   function remove(id) {
     const entry = state.layers.get(id);
     if (!entry) return;
+    state.layers.delete(id);
+    if (!entry.own) return;
     for (const object of entry.made.objects) { world.remove(object); object.geometry.dispose(); if (object.dispose) object.dispose(); }
     for (const material of entry.made.materials) material.dispose();
-    state.layers.delete(id);
   }
 
   function seen() {
-    for (const { layer, made: own, shown } of state.layers.values()) {
-      for (const object of own.objects) object.visible = visible(layer, shown);
+    for (const entry of state.layers.values()) {
+      const there = visible(entry.layer, entry.shown), fresh = there && !entry.own;
+      if (!there && !entry.own) continue;
+      for (const object of entry.made.objects) object.visible = there;
+      if (!fresh) continue;
+      for (const object of entry.made.objects) world.add(object);
+      shaded(entry);
+      faded(entry);
+      if (entry.layer.kind === "strips" && state.bend < 1) bend(state.bend);
     }
     draw();
   }
@@ -282,13 +294,15 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   }
 
   function shade() {
-    const map = current();
-    for (const { layer, made: own } of state.layers.values()) {
-      if (!own.shade) continue;
-      own.shade(map && layer.cells_of === map.on ? map.values : null, state.table);
-      if (own.rim) own.rim.color.set(map ? "#5a6472" : layer.edge || "#5a6472");
-    }
+    for (const entry of ready()) shaded(entry);
     draw();
+  }
+
+  function shaded({ layer, made: own }) {
+    const map = current();
+    if (!own.shade) return;
+    own.shade(map && layer.cells_of === map.on ? map.values : null, state.table);
+    if (own.rim) own.rim.color.set(map ? "#5a6472" : layer.edge || "#5a6472");
   }
 
   function footed() {
@@ -349,6 +363,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     if (!moved) return;
     state.under = null;
     lit("under", null);
+    if ([...state.layers.values()].some(({ layer, made: own }) => layer.kind === "strips" && !own.rows)) laid();
     for (const { layer, made: own } of state.layers.values()) if (layer.kind === "strips") own.bend(share, own.rows);
     if (state.picked) lit("picked", state.picked);
     seen();
@@ -375,7 +390,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     const size = camera.position.distanceTo(controls.target), pixel = (2 * size * Math.tan((FIELD * Math.PI) / 360)) / box.height;
     picker.params.Points.threshold = 5 * pixel;
     let best = null;
-    for (const { layer, made: own } of state.layers.values()) {
+    for (const { layer, made: own } of ready()) {
       for (const object of own.pickable.filter(({ visible }) => visible)) {
         for (const found of picker.intersectObject(object, false)) {
           const part = own.part(found), near = found.distance - (layer.kind === "dots" ? 12 * pixel : 0);
@@ -386,7 +401,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     return best;
   }
 
-  const about = (found) => state.layers.get(found.id).made.parts[found.part];
+  const about = (found) => state.layers.get(found.id).layer.parts[found.part];
 
   function written(node, { mark: name, lines }) {
     node.replaceChildren(tag("strong", "", name), ...lines.map((line) => tag("div", "", line)));
@@ -420,16 +435,18 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     draw();
   }
 
+  function faded({ layer, made: own }) {
+    const opacity = state.picked ? FAINT : layer.opacity ?? 1;
+    for (const material of own.materials) {
+      Object.assign(material, { transparent: opacity < 1, opacity, depthWrite: opacity === 1, needsUpdate: true });
+    }
+  }
+
   async function pick(found) {
     const same = found && state.picked && found.id === state.picked.id && found.part === state.picked.part;
     state.picked = found;
     lit("picked", found);
-    for (const { layer, made: own } of state.layers.values()) {
-      for (const material of own.materials) {
-        const opacity = found ? FAINT : layer.opacity ?? 1;
-        Object.assign(material, { transparent: opacity < 1, opacity, depthWrite: !found && opacity === 1, needsUpdate: true });
-      }
-    }
+    for (const entry of ready()) faded(entry);
     if (!found) {
       const open = !side.hidden;
       side.hidden = true;
@@ -469,8 +486,8 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   addEventListener("keydown", (event) => { if (event.key === "Escape" && state.picked) pick(null); });
 
   function find(name) {
-    for (const { layer, made: own } of state.layers.values()) {
-      const part = own.parts.findIndex(({ mark: known }) => known === name);
+    for (const { layer } of state.layers.values()) {
+      const part = (layer.parts || []).findIndex(({ mark: known }) => known === name);
       if (part >= 0) return { id: layer.id, part, name };
     }
     return null;

@@ -18,10 +18,10 @@ def test_every_edge_and_quad_of_the_control_mesh_and_of_both_diagonal_meshes_is_
     control, _ = net
     layers = {layer.id: layer for layer in net_layers(control, np.zeros(3))}
     first, second = gs.diagonal_meshes(control)
-    assert len(layers["control-edges"].counts) == len(control.mesh.edges)
+    assert len(layers["control-edges"].pairs) == len(control.mesh.edges)
     assert len(layers["control-faces"].sizes) == len(control.quads)
-    assert len(layers["D2"].counts) == len(second.edges)
-    by_family = [len(layers[f"D1-{family}"].counts) for family in (1, 2)]
+    assert len(layers["D2"].pairs) == len(second.edges)
+    by_family = [len(layers[f"D1-{family}"].pairs) for family in (1, 2)]
     assert by_family == [int((first.family == family).sum()) for family in (1, 2)]
     assert len(layers["checkerboard"].sizes) == len(control.quads)
 
