@@ -23,6 +23,7 @@ from fabrication.cut import (
 from fabrication.jointed import Jointed
 from fabrication.joints import Joint
 from fabrication.stock import hollow_area, wall_of
+from fabrication.strip_picture import strip_svg
 from fabrication.structures import Structure
 from fabrication.unroll import Development, unroll
 from gridshell import SettingError
@@ -111,8 +112,6 @@ class FlatPart:
 
     def _repr_html_(self) -> str:
         """For notebooks: the flat pattern; families are told apart by the mark."""
-        from fabrication.export.strip_picture import strip_svg
-
         return card(
             f"Strip {self.mark}",
             _figures(self),

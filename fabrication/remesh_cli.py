@@ -255,7 +255,7 @@ def _guide(text: str) -> GuideFile:
 
 
 def _summary(result: Remeshed, out: Path) -> str:
-    from fabrication.export.words import plural
+    from fabrication.words import plural
 
     found, stray = result.made.report, result.made.report.alignment_deg
     low, _, high = found.edge_ratio

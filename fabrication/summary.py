@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from fabrication.export.words import number, plural
+from fabrication.words import number, plural
 
 Report = dict[str, Any]
 

@@ -8,11 +8,11 @@ from math import degrees
 import numpy as np
 from markupsafe import escape
 
-from fabrication.export.strip_drawing import svg_path
-from fabrication.export.words import fixed
 from fabrication.flattening import corners
 from fabrication.shapes import Shape, with_bulges
 from fabrication.sheet_parts import SheetPiece
+from fabrication.strip_drawing import svg_path
+from fabrication.words import fixed
 from gridshell.arrays import Floats
 
 _ROOM, _EDGE = (440.0, 320.0), 34.0

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from markupsafe import escape
 
 from fabrication.export.bars import Bars, bars_of
-from fabrication.export.words import number, plural
+from fabrication.words import number, plural
 
 _WIDTH, _HEIGHT = 360.0, 200.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 38.0, 14.0, 50.0, 34.0

@@ -15,8 +15,8 @@ from plotly.offline import get_plotlyjs
 
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.export.motion_glb import strip_triangles
-from fabrication.export.words import fixed, plural
 from fabrication.motion import Motion, MotionStep
+from fabrication.words import fixed, plural
 
 _STEPS = 65_535
 """Places along the largest side that coordinates are rounded to."""

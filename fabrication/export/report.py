@@ -25,9 +25,7 @@ from fabrication.export.scene.page import as_json, deflated, scripts, style
 from fabrication.export.scene.whole import flat_patterns, lamella_scene
 from fabrication.export.schedule import mass
 from fabrication.export.stress_view import net_words, stress_rows
-from fabrication.export.strip_drawing import strip_drawing
 from fabrication.export.verdicts import finding_groups, verdict
-from fabrication.export.words import fixed, number, plural
 from fabrication.jointed import Jointed
 from fabrication.motion import Motion
 from fabrication.nesting import NestedSheet, sheets_of
@@ -36,6 +34,7 @@ from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress, bay_stress
 from fabrication.stress_checks import stress_section
+from fabrication.words import fixed, number, plural
 
 
 def write_report(
@@ -78,6 +77,8 @@ def write_report(
     """
     stress = bay_stress(jointed.strips, parts) if stress is None else stress
     design, strips = jointed.design, jointed.strips
+    longest = max(parts, key=lambda part: round(part.length, 1))
+    patterns = flat_patterns(jointed, parts)
     page = shared(
         "report.html",
         name=name,
@@ -85,7 +86,7 @@ def write_report(
         pictures=pictures,
         series=[*series, stress_series(stress)],
         scene=lamella_scene(jointed, parts, stress, facade=facade, copies=copies, moving=moving),
-        patterns=flat_patterns(jointed, parts),
+        patterns=patterns,
         stress=stress_section(stress),
         net_section=net_words(stress),
         stress_rows=stress_rows(strips, stress),
@@ -102,7 +103,8 @@ def write_report(
         families=[sum(lamella.family == f for lamella in design.lamellas) for f in (1, 2)],
         size=np.ptp([node.position for node in design.nodes], axis=0) / 1e3,
         colours={family: css(colour) for family, colour in FAMILY_COLOURS.items()},
-        drawing=strip_drawing(max(parts, key=lambda part: round(part.length, 1))),
+        longest=longest,
+        drawing=Markup(patterns[longest.mark]),
     )
     try:
         Path(path).write_text(page, encoding="utf-8")

@@ -13,7 +13,7 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from fabrication.export.stages import Stage
-from fabrication.export.words import fixed, number, plural
+from fabrication.words import fixed, number, plural
 from gridshell.arrays import Floats, Indices, Points
 from gridshell.painter import Dots, Faces, Layer, Lines, View, corners, hexadecimal
 

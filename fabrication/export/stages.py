@@ -17,7 +17,7 @@ import numpy as np
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
-from fabrication.export.words import plural
+from fabrication.words import plural
 from gridshell.arrays import Floats, Indices
 from gridshell.painter import (
     Dots,

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from fabrication.export.scene.layers import Colouring
-from fabrication.export.words import fixed, number
 from fabrication.strength import BayStress
 from fabrication.structures import Structure
+from fabrication.words import fixed, number
 from gridshell.arrays import Floats
 
 

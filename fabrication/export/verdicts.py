@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fabrication.export.words import finite, plural, raised
 from fabrication.finding import Severity
+from fabrication.words import finite, plural, raised
 
 _GRADES = [grade.value for grade in (Severity.ERROR, Severity.WARNING, Severity.INFO)]
 

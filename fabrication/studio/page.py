@@ -11,13 +11,13 @@ from nicegui import ui
 from nicegui.client import Client
 
 from fabrication.export.scene.page import style
-from fabrication.export.words import plural, raised
 from fabrication.finding import Finding, Severity
 from fabrication.studio.knobs import Knob
 from fabrication.studio.readings import Reading, built_readings, net_readings
 from fabrication.studio.scenes import built_scene, centre_of, net_scene, residual_chart
 from fabrication.studio.session import Change, Session
 from fabrication.studio.shell_view import ShellView
+from fabrication.words import plural, raised
 from gridshell.arrays import Floats
 
 _CSS = (Path(__file__).parent / "studio.css").read_text(encoding="utf-8") + style()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fabrication.export.words import fixed, number, plural
 from fabrication.lamella_system import LamellaSystem
 from fabrication.panel_route import PanelNetSystem
 from fabrication.studio.design import Built, NetDesign
+from fabrication.words import fixed, number, plural
 from gridshell import Spread
 
 

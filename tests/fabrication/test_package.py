@@ -14,8 +14,8 @@ import gridshell as gs
 from fabrication import lamella_system, package, routes
 from fabrication.cut import area
 from fabrication.errors import KernelError, OutputError, StockError
-from fabrication.export.words import number
 from fabrication.finding import Finding, Severity
+from fabrication.words import number
 from gridshell.mesh import grid_quads
 
 pytestmark = [pytest.mark.xdist_group("kernel"), pytest.mark.usefixtures("kernel_here")]

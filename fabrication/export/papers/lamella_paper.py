@@ -30,7 +30,6 @@ from fabrication.export.papers.tables import Column
 from fabrication.export.quality_series import Series, stress_series
 from fabrication.export.schedule import mass
 from fabrication.export.stress_view import stress_rows
-from fabrication.export.words import fixed, number
 from fabrication.jointed import Jointed
 from fabrication.nesting import NestedSheet, sheets_of
 from fabrication.outlines import Frame
@@ -38,6 +37,7 @@ from fabrication.parts import FlatPart
 from fabrication.ribbons import ribbons
 from fabrication.strength import BayStress
 from fabrication.stress_checks import stress_section
+from fabrication.words import fixed, number
 from gridshell.painter import Faces, painted
 
 _COPY = (0.80, 0.82, 0.84)

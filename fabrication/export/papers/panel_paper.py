@@ -24,9 +24,9 @@ from fabrication.export.papers.report_front import (
 )
 from fabrication.export.papers.tables import Column
 from fabrication.export.quality_series import Series
-from fabrication.export.words import fixed, number
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import COLOURS, PanelStructure
+from fabrication.words import fixed, number
 from gridshell.painter import Faces, padded, painted
 
 _PANELS = (

@@ -22,10 +22,10 @@ from fabrication.export.papers.sheet_frame import (
     page_area,
     text_width,
 )
-from fabrication.export.words import plural
 from fabrication.flattening import corners
 from fabrication.jointed import Jointed
 from fabrication.parts import FlatPart, uncut_nodes
+from fabrication.words import plural
 from gridshell.arrays import Floats
 
 _SCALES = (1.0, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from fabrication.export.papers.drawn import Figure
-from fabrication.export.words import finite, fixed, number, plural
+from fabrication.words import finite, fixed, number, plural
 
 Found = Mapping[str, Any]
 

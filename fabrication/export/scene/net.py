@@ -10,7 +10,7 @@ import numpy as np
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.export.scene.layers import Colouring, Faces, Layer, Lines, on_screen
-from fabrication.export.words import number
+from fabrication.words import number
 from gridshell.arrays import Floats, Indices, Points
 
 _MESH, _SECOND, _BOARD = "#8a95a3", "#9c7bb0", "#c9d2dc"

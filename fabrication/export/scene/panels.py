@@ -9,9 +9,9 @@ import numpy as np
 
 from fabrication.colours import css
 from fabrication.export.scene.layers import About, Colouring, Faces, Labels, Layer, on_screen
-from fabrication.export.words import fixed, number
 from fabrication.grouping import Group
 from fabrication.panel_structure import COLOURS, PanelStructure
+from fabrication.words import fixed, number
 from gridshell.arrays import Floats, Indices, Points
 
 _ALONE = (0.74, 0.80, 0.84)

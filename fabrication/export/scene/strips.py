@@ -26,13 +26,13 @@ from fabrication.export.scene.layers import (
     runs_of_pairs,
 )
 from fabrication.export.view_meshes import columns
-from fabrication.export.words import fixed, plural
 from fabrication.jointed import Jointed
 from fabrication.lamella import Lamella
 from fabrication.outlines import Frame
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress
 from fabrication.structures import Structure
+from fabrication.words import fixed, plural
 from gridshell.arrays import Floats, Indices
 
 _SAMPLES_PER_BAY = range(2, 7)

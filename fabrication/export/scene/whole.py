@@ -15,7 +15,6 @@ from fabrication.export.scene.net import net_layers
 from fabrication.export.scene.panels import panel_layers, plate_colouring, support_layers
 from fabrication.export.scene.strips import axis_layers, strip_layers
 from fabrication.export.stress_view import stress_colourings
-from fabrication.export.strip_picture import strip_svg
 from fabrication.jointed import Jointed
 from fabrication.motion import Motion
 from fabrication.outlines import Frame
@@ -23,6 +22,7 @@ from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.sheet_parts import panel_piece, plate_piece, star_piece
 from fabrication.strength import BayStress
+from fabrication.strip_picture import strip_svg
 from gridshell.arrays import Floats, Points
 
 

@@ -14,12 +14,12 @@ from fabrication.export.papers.panel_paper import write_panel_paper
 from fabrication.export.papers.sheet_frame import printable
 from fabrication.export.quality_series import net_series
 from fabrication.export.schedule import mass
-from fabrication.export.words import fixed, number
 from fabrication.jointed import BillLine
 from fabrication.nesting import nest
 from fabrication.outlines import Frame
 from fabrication.sheet_parts import panel_piece, plate_piece
 from fabrication.strength import NOT_CHECKED, bay_stress
+from fabrication.words import fixed, number
 
 REPORT = {
     "net": {

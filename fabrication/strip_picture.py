@@ -10,12 +10,11 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.export.strip_drawing import strip_drawing
-from fabrication.export.words import fixed
-from fabrication.parts import FlatPart
+from fabrication.strip_drawing import Strip, strip_drawing
+from fabrication.words import fixed
 
 
-def strip_svg(part: FlatPart, family: int) -> str:
+def strip_svg(part: Strip, family: int) -> str:
     """The drawing of *part* in the colour of its *family*, 1 or 2."""
     drawn: str = _macros().strip(strip_drawing(part), css(FAMILY_COLOURS[family]))
     return re.sub(r"[ \n]+", " ", drawn).strip()

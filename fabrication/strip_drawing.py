@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from fabrication.cut import Edge, Floor, Relief, Slot, outline
-from fabrication.export.words import fixed
-from fabrication.parts import FlatPart
+from fabrication.cut import Drill, Edge, Floor, Hole, Relief, Slot, outline
 from fabrication.shapes import with_bulges
+from fabrication.words import fixed
 from gridshell.arrays import Floats
 
 _STRIP, _THINNEST_SLOT, _PITCH = (1040.0, 62.0), 3.0, 13.0
@@ -21,7 +20,39 @@ _LETTER, _LINE = 7.0, 10.5
 _THINNEST_RELIEF, _SMALLEST_HOLE, _SHORTEST_BEVEL = 6.0, 1.6, 5.0
 
 
-def strip_drawing(part: FlatPart) -> dict[str, Any]:
+class Strip(Protocol):
+    """What of a flat part is drawn; lengths mm, x from the left end."""
+
+    @property
+    def mark(self) -> str:
+        """Its name."""
+
+    @property
+    def length(self) -> float:
+        """Of the longer face."""
+
+    @property
+    def width(self) -> float:
+        """Across."""
+
+    @property
+    def slots(self) -> Sequence[Slot]:
+        """From either edge."""
+
+    @property
+    def holes(self) -> Sequence[Hole]:
+        """Through the thickness."""
+
+    @property
+    def drills(self) -> Sequence[Drill]:
+        """Through the narrow walls of a tube."""
+
+    @property
+    def bevels(self) -> tuple[float, float]:
+        """How much longer the near face is at either end."""
+
+
+def strip_drawing(part: Strip) -> dict[str, Any]:
     """A flat strip to look at, px: lengths to scale, its width, slots, holes and bevels not.
 
     A station is its place along the strip, the place of its figure, and the figure. Labels are the
@@ -88,7 +119,7 @@ def _drawn(slot: Slot, along: float, across: float, free: float) -> Slot:
     return replace(slot, x=slot.x * along, width=width, depth=slot.depth * across, relief=relief)
 
 
-def _bevels(part: FlatPart, along: float) -> list[float]:
+def _bevels(part: Strip, along: float) -> list[float]:
     """Where the shorter face ends, px."""
     start, end = (max(abs(run) * along, _SHORTEST_BEVEL) if run else 0.0 for run in part.bevels)
     return [*([start] if start else []), *([_STRIP[0] - end] if end else [])]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fabrication.cut import Edge, Floor, Hole, Relief, Slot
-from fabrication.export.strip_drawing import strip_drawing
+from fabrication.strip_drawing import strip_drawing
 
 
 def slots_at(*x, width=3.0, edge=Edge.UPPER, relief=None):
