@@ -19,10 +19,18 @@ from fabrication.studio.versions import Document, differences, set_value
 
 @dataclass(frozen=True)
 class Saved:
-    """What the file said when it was last read or written."""
+    """What the file said when it was last read or written.
+
+    Parameters
+    ----------
+    text : what a save goes on from.
+    seen : what the file says as far as is known: *text*, or what another program wrote over it and
+        may be written over; None where it was removed.
+    """
 
     path: Path
     text: str
+    seen: str | None
 
     @property
     def document(self) -> dict[str, Any]:
@@ -39,7 +47,7 @@ class Saved:
     @property
     def changed(self) -> bool:
         """Whether another program wrote or removed it since."""
-        return self.now() != self.text
+        return self.now() != self.seen
 
 
 def read(path: Path) -> Saved:
@@ -50,7 +58,8 @@ def read(path: Path) -> Saved:
     ProjectError
         When it cannot be read or is not TOML.
     """
-    return Saved(path, read_document(path)[0])
+    text, _ = read_document(path)
+    return Saved(path, text, text)
 
 
 def edited(text: str, document: Document) -> str:
@@ -140,7 +149,7 @@ def _written(path: Path, text: str) -> Saved:
             where=str(path),
             value=error.strerror or type(error).__name__,
         ) from None
-    return Saved(path, text)
+    return Saved(path, text, text)
 
 
 def outside(document: Document, folder: Path) -> str | None:

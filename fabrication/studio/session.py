@@ -11,7 +11,7 @@ import asyncio
 import time
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
 from pathlib import Path
@@ -204,8 +204,7 @@ class Session:
 
     def keep(self) -> None:
         """Go on with what is shown, and save over what another program wrote."""
-        text = self.saved.now()
-        self.saved = Saved(self.saved.path, self.saved.text if text is None else text)
+        self.saved = replace(self.saved, seen=self.saved.now())
         self.differs_on_disk = False
         self._tell(Change.DISK)
 

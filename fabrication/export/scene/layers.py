@@ -7,30 +7,16 @@ that only make sense where strips are in place.
 
 from __future__ import annotations
 
-import base64
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gridshell.arrays import Floats, Indices, Points
-
-Packed = dict[str, Any]
-
-_KINDS = {"f4": "<f4", "u1": "u1", "u2": "<u2", "u4": "<u4"}
-
-
-def packed(values: Any, kind: str) -> Packed:
-    """An array of any shape as text: numbers of *kind* f4, u1, u2 or u4, row by row."""
-    raw = np.ascontiguousarray(values, dtype=_KINDS[kind]).tobytes()
-    return {"kind": kind, "bytes": base64.b64encode(raw).decode()}
-
-
-def on_screen(points: Points, centre: Floats) -> NDArray[np.float32]:
-    """*points* (n, 3) mm as metres from *centre* (3,), in single precision."""
-    return np.asarray((np.asarray(points) - centre) / 1e3, dtype=np.float32)
+from fabrication.export.scene.packing import Packed, packed, runs
+from gridshell.arrays import Floats, Indices
 
 
 @dataclass(frozen=True)
@@ -54,8 +40,8 @@ class About:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Layer:
-    """What all layers share; abstract.
+class Layer(ABC):
+    """What all layers share.
 
     Parameters
     ----------
@@ -85,20 +71,13 @@ class Layer:
             **self.arrays(),
         }
 
+    @abstractmethod
     def arrays(self) -> Packed:
         """What the layer's kind adds."""
-        raise NotImplementedError
 
 
 def _parts(parts: Sequence[About]) -> list[Packed]:
     return [part.packed() for part in parts]
-
-
-def runs(numbers: Indices) -> Packed:
-    """Numbers (m,) as runs of equal ones: which, and how long."""
-    starts = np.flatnonzero(np.r_[len(numbers) > 0, np.diff(numbers) != 0])
-    lengths = np.diff(np.r_[starts, len(numbers)])
-    return {"numbers": numbers[starts].tolist(), "lengths": lengths.tolist()}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -204,14 +183,6 @@ class Lines(Layer):
     def arrays(self) -> Packed:
         """Points, and which are joined."""
         return {"points": packed(self.points, "f4"), "pairs": packed(self.pairs, "u4")}
-
-
-def runs_of_pairs(counts: Sequence[int]) -> Indices:
-    """(m, 2) neighbours in lines of so many points each, one line after the other."""
-    numbers = np.arange(sum(counts))
-    last = np.cumsum(counts) - 1
-    first = np.delete(numbers, last)
-    return np.stack([first, first + 1], axis=1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -6,7 +6,8 @@ import numpy as np
 
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.export.motion_glb import strip_triangles
-from fabrication.export.scene.layers import Positions, on_screen
+from fabrication.export.scene.layers import Positions
+from fabrication.export.scene.packing import on_screen
 from fabrication.motion import Motion
 from gridshell.arrays import Floats
 

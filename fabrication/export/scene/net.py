@@ -9,7 +9,8 @@ import numpy as np
 
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.export.scene.layers import Colouring, Faces, Layer, Lines, on_screen
+from fabrication.export.scene.layers import Colouring, Faces, Layer, Lines
+from fabrication.export.scene.packing import on_screen
 from fabrication.words import number
 from gridshell.arrays import Floats, Indices, Points
 

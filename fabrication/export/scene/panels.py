@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fabrication.colours import css
-from fabrication.export.scene.layers import About, Colouring, Faces, Labels, Layer, on_screen
+from fabrication.export.scene.layers import About, Colouring, Faces, Labels, Layer
+from fabrication.export.scene.packing import on_screen
 from fabrication.grouping import Group
 from fabrication.panel_structure import COLOURS, PanelStructure
 from fabrication.words import fixed, number

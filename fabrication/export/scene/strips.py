@@ -15,16 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.export.scene.layers import (
-    About,
-    Dots,
-    Labels,
-    Layer,
-    Lines,
-    Strips,
-    on_screen,
-    runs_of_pairs,
-)
+from fabrication.export.scene.layers import About, Dots, Labels, Layer, Lines, Strips
+from fabrication.export.scene.packing import on_screen, runs_of_pairs
 from fabrication.export.view_meshes import columns
 from fabrication.jointed import Jointed
 from fabrication.lamella import Lamella

@@ -54,7 +54,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     renderer = new THREE.WebGLRenderer({ antialias: !slow });
   } catch {
     stage.append(tag("p", "gv-none", "This browser shows no WebGL, which the 3D view needs; all else on the page works without."));
-    return { show() {}, replace() {}, ready: false };
+    return { replace() {}, ready: false };
   }
   renderer.setPixelRatio(ratio);
   renderer.setClearColor("#ffffff");
@@ -172,15 +172,6 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   }
 
   // ---- layers -------------------------------------------------------------------------------
-
-  function show(scene, { keep = false } = {}) {
-    const before = new Map([...state.layers].map(([id, { shown }]) => [id, shown]));
-    for (const id of [...state.layers.keys()]) remove(id);
-    Object.assign(state, { maps: read(scene.maps || []), scale: scene.scale, table: ramp(scene.scale), home: scene.view || state.home });
-    for (const layer of scene.layers) add(layer, keep && before.has(layer.id) ? before.get(layer.id) : layer.visible);
-    settle();
-    if (!keep) frame();
-  }
 
   const read = (maps) => maps.map((map) => ({ ...map, values: unpacked(map.values) }));
 
@@ -495,7 +486,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
 
   resized();
   return {
-    ready: true, camera, show, replace, frame, bend, open, state,
+    ready: true, camera, replace, frame, bend, open, state,
     select: (name) => pick(name === null ? null : find(name)),
     colour: (name) => { state.map = name; reveal(); shade(); barred(); },
     picture: () => { if (slow) smooth(); else render(); return renderer.domElement.toDataURL("image/png"); },

@@ -9,9 +9,10 @@ import numpy as np
 import gridshell as gs
 from fabrication.export.flat_drawing import piece_svg, shape_svg
 from fabrication.export.scene.bodies import connector_layers, pattern_key
-from fabrication.export.scene.layers import Layer, Scene, on_screen
+from fabrication.export.scene.layers import Layer, Scene
 from fabrication.export.scene.motion import motion_layers
 from fabrication.export.scene.net import net_layers
+from fabrication.export.scene.packing import on_screen
 from fabrication.export.scene.panels import panel_layers, plate_colouring, support_layers
 from fabrication.export.scene.strips import axis_layers, strip_layers
 from fabrication.export.stress_view import stress_colourings

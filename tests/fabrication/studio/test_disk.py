@@ -87,7 +87,7 @@ def test_a_copy_is_not_written_over_another_file(path):
 
 
 def test_a_folder_that_cannot_be_written_leaves_nothing_behind(path, text):
-    gone = Saved(path.parent / "nowhere" / "pavilion.toml", text)
+    gone = Saved(path.parent / "nowhere" / "pavilion.toml", text, text)
     with pytest.raises(OutputError, match="cannot be saved"):
         write_copy(gone, "x.toml", turned(path))
 

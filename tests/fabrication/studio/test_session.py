@@ -159,6 +159,32 @@ def test_one_may_keep_what_is_shown(path, monkeypatch, text):
     asyncio.run(turn())
 
 
+def test_what_another_program_removed_can_be_saved_again(path):
+    async def turn():
+        async with working(path) as session:
+            path.unlink()
+            session.save()
+            assert "another program" in session.trouble
+            session.keep()
+            session.save()
+            assert session.trouble == ""
+            assert not session.saved.changed
+
+    asyncio.run(turn())
+    assert read_project(path).net.angle == 70.0
+
+
+def test_keeping_mine_leaves_nothing_of_theirs(path, text):
+    async def turn():
+        async with working(path) as session:
+            path.write_text(text.replace("width = 80.0", "width = 80.0\noverhang = 60.0"))
+            session.keep()
+            session.save()
+
+    asyncio.run(turn())
+    assert read_project(path).profile.overhang is None
+
+
 def test_a_broken_file_on_disk_is_told_and_loses_nothing(path):
     async def turn():
         async with working(path) as session:
@@ -206,7 +232,7 @@ def test_the_package_is_what_run_writes(path, tmp_path, text):
     assert path.read_text() == text
 
 
-@pytest.mark.parametrize("name", ["", "..", "../out", "/tmp/out", "a/b", ".hidden"])
+@pytest.mark.parametrize("name", ["", "..", "../out", "/out", "a/b", ".hidden"])
 def test_a_package_stays_in_the_folder(path, name):
     async def turn():
         async with working(path) as session:
