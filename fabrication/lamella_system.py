@@ -13,6 +13,8 @@ from fabrication.errors import KernelError
 from fabrication.export.cut_sets import CutSet, cut_set
 from fabrication.export.interchange.model import Model, lamella_model
 from fabrication.export.quality_series import Series
+from fabrication.export.sheet_drawing import SheetDrawing, sheet_drawings
+from fabrication.export.sheet_files import sheet_files
 from fabrication.export.step_prism_reader import StepCopy, StepPrism
 from fabrication.export.step_reader import StepPart
 from fabrication.exporting import write_exports
@@ -190,6 +192,7 @@ class LamellaSystem:
             series=series,
             copies=() if self.segmented is None else self.segmented.segments.poses[1:],
             moving=None if self.moving is None else (self.moving.motion, self.moving.opening),
+            drawings=self._sheet_drawings(),
         )
 
     def write_paper(self, path: Path, report: Report, series: Sequence[Series]) -> None:
@@ -207,6 +210,23 @@ class LamellaSystem:
             sheets=self.sheets[0].sheets,
             copies=() if self.segmented is None else self.segmented.segments.poses[1:],
         )
+
+    def _sheet_drawings(self) -> list[SheetDrawing]:
+        """Of all sheets and bars, those of the panels above the strips included."""
+        name, found = self.project.name, []
+        for own in self.sheets:
+            files = sheet_files(
+                own.sheets,
+                name=name,
+                material=own.material.name,
+                prefix=own.prefix,
+                process=self.process,
+            )
+            found += sheet_drawings(own.sheets, files)
+        if self.facade is not None:
+            panels = self.facade.sheets
+            found += sheet_drawings(panels, sheet_files(panels, prefix="panels"))
+        return found
 
     # ---- files ---------------------------------------------------------------------------------
 

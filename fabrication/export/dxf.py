@@ -31,6 +31,7 @@ from fabrication.errors import OutputError
 from fabrication.export.dxf_content import APPLICATION
 from fabrication.export.dxf_reader import DxfPart as DxfPart
 from fabrication.export.dxf_reader import read_dxf as read_dxf
+from fabrication.export.sheet_files import sheet_files, sheet_thickness
 from fabrication.kerf import moved_out
 from fabrication.nesting import NestedSheet, Placement
 from fabrication.parts import Label
@@ -75,19 +76,11 @@ def write_dxf(
     process = Process() if process is None else process
     folder = Path(folder)
     font = _StrokeFont()
-    digits = max(2, len(str(len(sheets))))
+    files = sheet_files(sheets, name=name, material=material, prefix=prefix, process=process)
     paths = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for nested in sheets:
-            number = f"{nested.number:0{digits}d}"
-            file = process.files.named(
-                name=name,
-                material=material,
-                thickness=_thickness(nested),
-                prefix=prefix,
-                number=number,
-            )
+        for nested, file in zip(sheets, files, strict=True):
             path = folder / f"{file}.dxf"
             title = _title(nested, len(sheets), name, material)
             document = _Writer(process, font).document(nested, title, _quantities(nested, alike))
@@ -116,7 +109,7 @@ def _quiet() -> Iterator[None]:
 def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
     """One line: project, sheet of how many, material and thickness, size of the sheet, parts."""
     sheet, parts = nested.sheet, [placement.part for placement in nested.placements]
-    thickness = _thickness(nested)
+    thickness = sheet_thickness(nested)
     pieces = (
         " ".join(name.split()),
         f"sheet {nested.number} of {sheets}",
@@ -125,12 +118,6 @@ def _title(nested: NestedSheet, sheets: int, name: str, material: str) -> str:
         f"{len(parts)} {'part' if len(parts) == 1 else 'parts'}",
     )
     return "  |  ".join(piece for piece in pieces if piece)
-
-
-def _thickness(nested: NestedSheet) -> str:
-    """Of the sheet's parts: "2.5 mm"."""
-    sizes = sorted({placement.part.thickness for placement in nested.placements})
-    return " / ".join(f"{size:g} mm" for size in sizes)
 
 
 def _quantities(nested: NestedSheet, alike: Mapping[str, str] | None) -> str:

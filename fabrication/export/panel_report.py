@@ -15,6 +15,8 @@ from fabrication.export.quality_series import Series
 from fabrication.export.report import shared
 from fabrication.export.scene.panels import group_colours
 from fabrication.export.scene.whole import panel_patterns, panel_scene
+from fabrication.export.sheet_drawing import sheet_drawings
+from fabrication.export.sheet_files import sheet_files
 from fabrication.nesting import NestedSheet
 from fabrication.panel_structure import COLOURS, PanelStructure
 
@@ -67,10 +69,14 @@ def write_panel_report(
                 enumerate(built.panel_groups), key=lambda pair: -len(pair[1].members)
             )
         ],
-        sheets=[
-            *_sheets(panel_sheets, "panels"),
-            *_sheets(plate_sheets, "plates"),
-            *_sheets(star_sheets, "stars"),
+        drawings=[
+            drawing
+            for prefix, sheets in (
+                ("panels", panel_sheets),
+                ("plates", plate_sheets),
+                ("stars", star_sheets),
+            )
+            for drawing in sheet_drawings(sheets, sheet_files(sheets, prefix=prefix))
         ],
         size=np.ptp(built.mesh.vertices, axis=0) / 1e3,
         swatches={"panel": "a", "plate": "b", "connector": "c", "star plate": "c"},
@@ -82,17 +88,3 @@ def write_panel_report(
         raise OutputError(
             "The report cannot be written", where=str(path), value=error.strerror or ""
         ) from None
-
-
-def _sheets(sheets: Sequence[NestedSheet], prefix: str) -> list[dict[str, Any]]:
-    digits = max(2, len(str(len(sheets))))
-    return [
-        {
-            "file": f"{prefix}-{sheet.number:0{digits}d}.dxf",
-            "parts": len(sheet.placements),
-            "length": sheet.sheet.length,
-            "width": sheet.sheet.width,
-            "used": sheet.used,
-        }
-        for sheet in sheets
-    ]

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fabrication.errors import OutputError
+from fabrication.export.sheet_files import sheet_files
 from fabrication.grouping import Group
 from fabrication.nesting import NestedSheet, SheetPart
 from fabrication.outlines import corner_angles
@@ -158,10 +159,10 @@ def _connectors(built: PanelStructure, sheets: Sequence[NestedSheet]) -> Iterato
 
 
 def _lying(sheets: Sequence[NestedSheet], prefix: str) -> dict[str, tuple[SheetPart, str]]:
-    digits = max(2, len(str(len(sheets))))
+    files = sheet_files(sheets, prefix=prefix)
     return {
-        p.part.mark: (p.part, f"{prefix}-{sheet.number:0{digits}d}")
-        for sheet in sheets
+        p.part.mark: (p.part, file)
+        for sheet, file in zip(sheets, files, strict=True)
         for p in sheet.placements
     }
 

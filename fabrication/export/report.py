@@ -24,6 +24,7 @@ from fabrication.export.scene.layers import Scene
 from fabrication.export.scene.page import as_json, deflated, scripts, style
 from fabrication.export.scene.whole import flat_patterns, lamella_scene
 from fabrication.export.schedule import mass
+from fabrication.export.sheet_drawing import SheetDrawing
 from fabrication.export.stress_view import net_words, stress_rows
 from fabrication.export.verdicts import finding_groups, verdict
 from fabrication.jointed import Jointed
@@ -52,6 +53,7 @@ def write_report(
     series: Sequence[Series] = (),
     copies: Sequence[Frame] = (),
     moving: tuple[Motion, float] | None = None,
+    drawings: Sequence[SheetDrawing] = (),
 ) -> None:
     """Write the page.
 
@@ -69,6 +71,7 @@ def write_report(
     series : the figures of the net, element by element; those of the strips come from *stress*.
     copies : where else the shell stands, drawn as lines.
     moving : how the net opens, and how far it is opened as built.
+    drawings : of all cutting sheets.
 
     Raises
     ------
@@ -87,6 +90,7 @@ def write_report(
         series=[*series, stress_series(stress)],
         scene=lamella_scene(jointed, parts, stress, facade=facade, copies=copies, moving=moving),
         patterns=patterns,
+        drawings=drawings,
         stress=stress_section(stress),
         net_section=net_words(stress),
         stress_rows=stress_rows(strips, stress),
@@ -123,6 +127,7 @@ def shared(
     series: Sequence[Series],
     scene: Scene,
     patterns: Mapping[str, str],
+    drawings: Sequence[SheetDrawing],
     **more: Any,
 ) -> str:
     """A report's page: *template* with what all reports share, and *more* of its own.
@@ -132,6 +137,7 @@ def shared(
     series : what the histograms are drawn of.
     scene : of the 3D view.
     patterns : SVG of flat parts, by their marks.
+    drawings : of all cutting sheets.
     """
     level, words = verdict(report.get("findings"))
     page: str = _template(template).render(
@@ -144,6 +150,7 @@ def shared(
         histograms=[Markup(svg) for svg in histograms(series)],
         scene=as_json(scene.packed()),
         patterns=deflated(patterns),
+        drawings=drawings,
         scripts=scripts(),
         viewer_style=style(),
         **more,

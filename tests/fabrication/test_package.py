@@ -500,8 +500,10 @@ def test_a_surface_from_a_file_becomes_lamellas_and_tells_how(tmp_path):
     assert report["net"]["star_planarity"]["max"] < 1e-7
     assert report["net"]["surface_distance_mm"]["max"] < 5.0
     page = (tmp_path / "out" / "report.html").read_text()
-    assert page.count("<figure>") == 6
-    assert "From the surface to the net" in page
+    _, way = page.split("From the surface to the net")
+    assert way[: way.index("<h2>Findings")].count("<figure>") == 6
+    drawn = re.findall(r'<b class="code">([^<]+\.dxf)</b>', page)
+    assert sorted(drawn) == sorted(path.name for path in (tmp_path / "out" / "sheets").iterdir())
     assert set(content(tmp_path / "out")) >= FILES - {"sheets/sheet-02.dxf"}
 
 

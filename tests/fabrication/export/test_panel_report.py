@@ -73,6 +73,15 @@ def test_the_page_shows_the_figures_and_asks_nothing_of_the_network(page):
     assert "default-src 'none'" in page
 
 
+def test_the_sheets_of_the_page_are_those_of_panels_and_plates(page, leaning):
+    panels, plates = sheets(leaning)
+    drawn = re.findall(r"<b class=\"code\">([^<]+)</b>", page)
+    assert drawn == [
+        *(f"panels-{sheet.number:02d}.dxf" for sheet in panels),
+        *(f"plates-{sheet.number:02d}.dxf" for sheet in plates),
+    ]
+
+
 def test_the_cut_list_of_the_page_has_every_part(page, leaning):
     parts = [*leaning.panels, *leaning.plates, *leaning.connectors]
     for part in parts:

@@ -15,6 +15,8 @@ from fabrication.export.quality_series import net_series
 from fabrication.export.report import write_report
 from fabrication.export.scene.page import scripts
 from fabrication.export.schedule import mass
+from fabrication.export.sheet_drawing import sheet_drawings
+from fabrication.export.sheet_files import sheet_files
 from fabrication.jointed import BillLine
 from fabrication.joints import DoubleSlotJoint, SlotJoint, StarWasher
 from fabrication.nesting import nest
@@ -594,3 +596,42 @@ def test_a_round_floor_is_drawn_as_large_as_it_is(page, catenoid):
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     wanted = sum(p.area for p in parts if p.mark.startswith("A"))
     assert np.linalg.norm(normals, axis=1).sum() / 2.0 == pytest.approx(wanted / 1e6, rel=2e-3)
+
+
+# ---- cutting sheets -------------------------------------------------------------------------
+
+
+def test_sheets_are_drawn_and_open_to_be_read(tmp_path, catenoid, chromium):
+    jointed, parts = catenoid
+    sheets = nest(parts, Sheet(6000.0, 700.0))
+    path = tmp_path / "report.html"
+    drawings = sheet_drawings(sheets, sheet_files(sheets))
+    write_report(path, name="x", report=REPORT, jointed=jointed, parts=parts, drawings=drawings)
+    page = chromium.new_page(viewport={"width": 1200, "height": 800})
+    page.goto(path.as_uri())
+    files = page.locator("#sheets figcaption b").all_text_contents()
+    assert files == [f"{name}.dxf" for name in sheet_files(sheets)]
+    page.locator("#sheets figure button").first.click()
+    large, name = page.locator("#sheet svg"), page.locator("#sheet header b")
+    whole = large.get_attribute("viewBox")
+    at = large.bounding_box()
+    page.mouse.move(at["x"] + 0.3 * at["width"], at["y"] + 0.5 * at["height"])
+    page.mouse.wheel(0, -500)
+    zoomed = [float(number) for number in large.get_attribute("viewBox").split()]
+    assert zoomed[2] == pytest.approx(float(whole.split()[2]) / np.e)
+    page.mouse.down()
+    page.mouse.move(at["x"] + 0.4 * at["width"], at["y"] + 0.5 * at["height"])
+    page.mouse.up()
+    moved = [float(number) for number in large.get_attribute("viewBox").split()]
+    assert moved[0] == pytest.approx(zoomed[0] - 0.1 * zoomed[2], rel=0.01)
+    assert moved[1:] == pytest.approx(zoomed[1:])
+    page.keyboard.press("ArrowRight")
+    assert name.inner_text() == files[1 % len(files)]
+    assert large.get_attribute("viewBox") == whole
+    page.keyboard.press("Escape")
+    assert not large.is_visible()
+    page.close()
+
+
+def test_a_page_without_sheets_has_no_such_section(page):
+    assert 'id="sheets"' not in page()
