@@ -7,6 +7,7 @@ below, and words that are too long are cut.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -195,7 +196,7 @@ def _row(
 def wrapped(text: str, width: float, height: float, *, bold: bool = False) -> list[str]:
     """*text* in lines of at most *width* mm; a word that is longer is cut."""
     lines = [""]
-    for word in printable(text).split(" "):
+    for word in re.split("[ \x00-\x1f]", text):
         longer = f"{lines[-1]} {word}" if lines[-1] else word
         if text_width(longer, height, bold=bold) <= width:
             lines[-1] = longer

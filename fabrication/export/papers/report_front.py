@@ -134,7 +134,7 @@ def _finding_row(group: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
 
 def charts(series: Sequence[Series]) -> Iterator[Block]:
     """The histograms."""
-    yield heading("How it is spread")
+    yield heading("Quality")
     yield from chart_blocks(series)
 
 

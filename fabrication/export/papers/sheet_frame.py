@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
 from pathlib import Path
@@ -39,8 +39,11 @@ _CAP = 0.716
 _RAISED = "⁻⁰⁴⁵⁶⁷⁸⁹"
 """Superscripts that the fonts have not; they have ¹²³."""
 
-_POWER = re.compile(f"[{_RAISED}¹²³]*[{_RAISED}][{_RAISED}¹²³]*")
+_POWER = re.compile(f"([¹²³]*[{_RAISED}][{_RAISED}¹²³]*)")
 _LOWERED = str.maketrans(_RAISED + "¹²³", "-0456789123")
+_SMALL, _RISE = 0.65, 0.36
+"""Size of a power over that of its text, and how far above the base line it stands."""
+
 _NEAREST = {0x2212: "-", 0x202F: "\xa0", **dict.fromkeys(range(0x20), " ")}
 
 
@@ -137,41 +140,45 @@ class Pen:
         *height* is that of capitals, mm. Text longer than *within* mm is made smaller.
         """
         font, size = _BOLD if bold else _FONT, height / _CAP * mm
-        text = printable(text)
+        width = text_width(text, height, bold=bold) * mm
         if within is not None:
-            size *= min(1.0, within * mm / max(stringWidth(text, font, size), 1e-9))
+            fitting = min(1.0, within * mm / max(width, 1e-9))
+            size, width = fitting * size, fitting * width
         self.canvas.saveState()
         self.canvas.translate(x * mm, y * mm)
         self.canvas.rotate(angle)
-        self.canvas.setFont(font, size)
         self.canvas.setFillGray(grey)
-        write = {
-            "left": self.canvas.drawString,
-            "middle": self.canvas.drawCentredString,
-            "right": self.canvas.drawRightString,
-        }[align]
-        write(0.0, 0.0, text)
+        at = -{"left": 0.0, "middle": 0.5, "right": 1.0}[align] * width
+        for run, raised in _runs(text):
+            own = _SMALL * size if raised else size
+            self.canvas.setFont(font, own)
+            self.canvas.drawString(at, _RISE * size if raised else 0.0, run)
+            at += stringWidth(run, font, own)
         self.canvas.restoreState()
 
 
 def printable(text: str) -> str:
     """*text* in the letters of the built-in fonts; others become question marks.
 
-    Powers of ten are written with a ^, minus signs as hyphens.
+    Powers of ten are written with a ^, minus signs as hyphens: for a file's title; a ``Pen`` raises
+    powers.
     """
-    text = re.sub(
-        f"[¹²³]*[{_RAISED}][{_RAISED}¹²³]*|⁻[¹²³]+",
-        lambda found: "^" + found[0].translate(_LOWERED),
-        text,
-    )
-    text = text.translate(_NEAREST)
-    return text.encode("cp1252", errors="replace").decode("cp1252")
+    return "".join(f"^{run}" if raised else run for run, raised in _runs(text))
+
+
+def _runs(text: str) -> Iterator[tuple[str, bool]]:
+    """Pieces of *text* in the letters of the built-in fonts, and whether they are raised."""
+    for k, piece in enumerate(_POWER.split(text)):
+        nearest = piece.translate(_LOWERED if k % 2 else _NEAREST)
+        if nearest:
+            yield nearest.encode("cp1252", errors="replace").decode("cp1252"), bool(k % 2)
 
 
 def text_width(text: str, height: float = TEXT, *, bold: bool = False) -> float:
     """Length of a line of text, mm."""
-    font = _BOLD if bold else _FONT
-    return float(stringWidth(printable(text), font, height / _CAP * mm) / mm)
+    font, size = _BOLD if bold else _FONT, height / _CAP
+    runs = _runs(text)
+    return float(sum(stringWidth(run, font, _SMALL * size if up else size) for run, up in runs))
 
 
 @dataclass(frozen=True)

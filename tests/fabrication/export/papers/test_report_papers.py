@@ -81,7 +81,7 @@ def written(path, material, *, name="roof", report=REPORT, **more):
 
 def words(value):
     """A number as it is read off paper."""
-    return printable(value).replace("\xa0", " ")
+    return printable(value).replace("\xa0", " ").replace("^", "\n")  # powers are runs of their own
 
 
 def test_the_paper_holds_the_figures_of_the_report(tmp_path, material):

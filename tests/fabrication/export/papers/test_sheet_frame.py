@@ -77,3 +77,30 @@ def test_text_the_fonts_do_not_have_becomes_question_marks():
 def test_the_date_follows_the_environment(monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     assert today() == date(1970, 1, 1)
+
+
+@pytest.mark.parametrize("align", ["left", "middle", "right"])
+def test_powers_are_raised_and_smaller_and_keep_to_the_alignment(tmp_path, align):
+    drawn = []
+
+    def draw(pen, area):
+        pen.text(100.0, 100.0, "4 × 10⁻¹² mm²", height=3.58, align=align)
+
+    path = write_pages(tmp_path / "a.pdf", [Page("Powers", "1:1", draw)], TITLES)
+
+    def seen(text, matrix, place, font, size):
+        x, y = 25.4 / 72.0 * (place[4] + matrix[4]), 25.4 / 72.0 * (place[5] + matrix[5])
+        if text.strip() and y > 90.0:
+            drawn.append((text.strip("\n"), x, y, size * 25.4 / 72.0))
+
+    PdfReader(path).pages[0].extract_text(visitor_text=seen)
+    (base, x, y, size), (power, _, up, small), (unit, _, back, _) = drawn
+    assert (base, power, unit.strip()) == ("4 × 10", "-12", "mm²")
+    assert y == back == pytest.approx(100.0)
+    assert y < up < y + size
+    assert size == pytest.approx(5.0)
+    assert 0.5 * size < small < size
+    width = text_width("4 × 10⁻¹² mm²", 3.58)
+    share = {"left": 0.0, "middle": 0.5, "right": 1.0}[align]
+    assert x == pytest.approx(100.0 - share * width, abs=1e-3)
+    assert width < text_width("4 × 10-12 mm²", 3.58)
