@@ -188,12 +188,14 @@ def net_of(
     folder: Path,
     begun: Start,
     progress: gs.Progress | None = None,
+    workspace: gs.Workspace | None = None,
 ) -> FoundNet:
     """The net of *project* from where it begins.
 
     Parameters
     ----------
     progress : called after every step with its number and the step.
+    workspace : what solves one after the other share.
 
     Raises
     ------
@@ -201,7 +203,7 @@ def net_of(
         When none is found near the start.
     """
     recipe = route.recipe(folder)
-    result = _found(optimised(project, recipe, begun, progress), begun)
+    result = _found(optimised(project, recipe, begun, progress, workspace), begun)
     quality = gs.measured_against(result.quality, result.control, begun.surface)
     if project.umbrella is not None:  # D2 only fills it: its quads have no node angle
         angles = np.degrees(gs.umbrella_of(result.control).node_angles)
@@ -250,12 +252,14 @@ def optimised(
     recipe: gs.NetRecipe,
     begun: Start,
     progress: gs.Progress | None = None,
+    workspace: gs.Workspace | None = None,
 ) -> gs.OptimizedNet:
     """The net from where it begins, held, weighted and kept to its surface as the project says.
 
     Parameters
     ----------
     progress : called after every step with its number and the step.
+    workspace : what solves one after the other share.
     """
     net = project.net
     recipe = _weighted(recipe, net)
@@ -265,7 +269,14 @@ def optimised(
     else:
         with keyed("net"):
             control, anchor = gs.stand_on(control, np.array(net.supports))
-    return gs.optimize(control, recipe, anchor=anchor, reference=reference, progress=progress)
+    return gs.optimize(
+        control,
+        recipe,
+        anchor=anchor,
+        reference=reference,
+        progress=progress,
+        workspace=workspace,
+    )
 
 
 def _weighted(recipe: gs.NetRecipe, net: NetSection) -> gs.NetRecipe:

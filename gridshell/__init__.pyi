@@ -260,6 +260,7 @@ from .solve import State as State
 from .solve import Step as Step
 from .solve import Stop as Stop
 from .solve import Weight as Weight
+from .solve import Workspace as Workspace
 from .soundness import remarks as remarks
 from .soundness import require_sound as require_sound
 from .supports import stand_on as stand_on

@@ -43,7 +43,7 @@ def principal_curvatures(mesh: QuadMesh, *, most: int | None = None) -> tuple[In
     for _ in range(2):
         frames = _frames(normals)
         offset = mesh.vertices[neighbours] - mesh.vertices[centre][:, None, :]
-        local = np.einsum("mkc,mic->mki", offset, frames) * inside[..., None]
+        local = (offset @ frames.swapaxes(1, 2)) * inside[..., None]
         size = np.abs(local[..., :2]).max(axis=(1, 2), keepdims=True)
         jet = _fit(local / size, inside)
         gradient = np.concatenate([-jet[:, :2], np.ones((len(jet), 1))], axis=1)
@@ -117,13 +117,14 @@ def _frames(normals: Vectors) -> Floats:
 
 def _fit(local: Points, inside: np.ndarray) -> Floats:
     """(m, 9) coefficients of x, y, x^2, xy, y^2 and the cubic terms, distance weighted."""
-    x, y, z = np.moveaxis(local, -1, 0)
-    weight = inside * np.exp(-2.0 * (x * x + y * y))
-    terms = [x, y, x * x, x * y, y * y, x**3, x * x * y, x * y * y, y**3]
-    basis = np.stack(terms, axis=-1) * weight[..., None]
-    across = basis.swapaxes(1, 2)
-    gram = across @ basis + 1e-12 * np.eye(9)
-    right = across @ (z * weight)[..., None]
+    x, y, z = np.ascontiguousarray(np.moveaxis(local, -1, 0))
+    xx, xy, yy = x * x, x * y, y * y
+    weight = inside * np.exp(-2.0 * (xx + yy))
+    basis = np.empty((len(x), 9, x.shape[1]))
+    for k, term in enumerate((x, y, xx, xy, yy, xx * x, xx * y, x * yy, yy * y)):
+        np.multiply(term, weight, out=basis[:, k])
+    gram = basis @ basis.swapaxes(1, 2) + 1e-12 * np.eye(9)
+    right = basis @ (z * weight)[..., None]
     return np.linalg.solve(gram, right)[..., 0]
 
 

@@ -12,7 +12,7 @@ from gridshell.picture import card, sketch
 from gridshell.pose import pose
 from gridshell.quality import NetQuality, net_quality
 from gridshell.recipes import Recipe
-from gridshell.solve import End, Progress, State, Step, history, solve
+from gridshell.solve import End, Progress, State, Step, Workspace, history, solve
 from gridshell.soundness import remarks, require_sound
 from gridshell.surface import Surface
 from gridshell.verdict import Verdict, verdict
@@ -95,6 +95,7 @@ def optimize(
     progress: Progress | None = None,
     start: Points | None = None,
     resume: State | None = None,
+    workspace: Workspace | None = None,
 ) -> OptimizedNet:
     """Move the vertices of *control* until they meet the recipe.
 
@@ -112,6 +113,7 @@ def optimize(
     start : (n, 3) where to begin when not at *control* itself, whose places the anchor and
         closeness go on to mean, mm.
     resume : where an earlier call with the same control mesh and recipe was left.
+    workspace : given to several calls one after the other, it spares what they have in common.
 
     Raises
     ------
@@ -125,7 +127,7 @@ def optimize(
     require_sound(control.mesh)
     posed = pose(control, anchor, reference, start=start)
     problem, x0 = recipe.problem(posed)
-    solution = solve(problem, x0, recipe.stop, progress, resume=resume)
+    solution = solve(problem, x0, recipe.stop, progress, resume=resume, workspace=workspace)
     moved = posed.outside(solution.x[: control.vertices.size].reshape(-1, 3))
     result = control.moved(moved)
     return OptimizedNet(

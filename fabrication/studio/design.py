@@ -60,7 +60,14 @@ class NetDesign:
 
 @dataclass(eq=False)
 class Starts:
-    """The last start of a solve, kept while what it comes from stays the same."""
+    """The last start of a solve, kept while what it comes from stays the same.
+
+    Parameters
+    ----------
+    workspace : what one solve leaves to the next.
+    """
+
+    workspace: gs.Workspace = field(default_factory=gs.Workspace)
 
     _key: str = ""
     _start: Start | None = field(default=None)
@@ -124,7 +131,7 @@ def find_net(
         stepped(residuals[-1])
 
     route = route_of(project)
-    net = net_of(project, route, folder, begun, progress)
+    net = net_of(project, route, folder, begun, progress, starts.workspace)
     figures = gs.quad_figures(
         net.result.control,
         planarity=net.recipe.planarity,

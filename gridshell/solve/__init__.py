@@ -7,6 +7,7 @@ from gridshell.solve.linear import Engine
 from gridshell.solve.problem import Guard, Problem, Term, Weight
 from gridshell.solve.solution import End, Solution, State, Step, history
 from gridshell.solve.unknowns import columns_of
+from gridshell.solve.workspace import Workspace
 
 __all__ = [
     "Constraint",
@@ -23,6 +24,7 @@ __all__ = [
     "Stop",
     "Term",
     "Weight",
+    "Workspace",
     "columns_of",
     "history",
     "solve",

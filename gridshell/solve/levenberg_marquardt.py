@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -19,9 +20,10 @@ import numpy as np
 from gridshell.arrays import Floats, Indices
 from gridshell.errors import SettingError, SolveError
 from gridshell.solve.constraint import Evaluation
-from gridshell.solve.linear import Engine, Factorisation, NormalEquations, factorisation
+from gridshell.solve.linear import Engine, Factorisation, NormalEquations
 from gridshell.solve.problem import Problem
 from gridshell.solve.solution import End, Solution, State, Step
+from gridshell.solve.workspace import Workspace
 
 _HALVINGS = 4
 _LARGEST_DAMPING = 1e12
@@ -68,8 +70,11 @@ def solve(
     progress: Progress | None = None,
     *,
     resume: State | None = None,
+    workspace: Workspace | None = None,
 ) -> Solution:
     """Minimise the weighted sum of squares of *problem* from *x0*, or from where it was left.
+
+    With a *workspace* it goes on with the pattern and the analysis of the solve before.
 
     An interrupt (Ctrl-C) ends the solve after the last step taken, with its state.
 
@@ -89,12 +94,9 @@ def solve(
             limit=f"{problem.size}",
         )
     patterns = [term.constraint.pattern() for term in problem.terms]
-    equations = NormalEquations(problem.size, patterns, problem.fixed)
-    factor = factorisation(equations, stop.engine)
-    try:
+    with nullcontext(workspace) if workspace else Workspace() as space:
+        equations, factor = space.prepared(problem.size, patterns, problem.fixed, stop.engine)
         return _Run(problem, stop, equations, factor, state).to_its_end(progress)
-    finally:
-        factor.close()
 
 
 class _Run:

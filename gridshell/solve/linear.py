@@ -73,6 +73,7 @@ class NormalEquations:
         reduced[self.free] = np.arange(len(self.free))
         self._columns = [reduced[p.columns] for p in patterns]
         self._build_pattern()
+        self._pulled = [np.where(c < 0, len(self.free), c).ravel() for c in self._columns]
 
     def _build_pattern(self) -> None:
         n = len(self.free)
@@ -88,7 +89,10 @@ class NormalEquations:
         inverse = np.where(inverse < 0, self.nonzeros, inverse).astype(np.int32)
         self._diagonal = inverse[:n]
         stops = n + np.cumsum([k.size for k in keys])
-        self._targets = np.split(inverse[n:], stops[:-1] - n) if keys else []
+        self._targets = inverse[n:]
+        self._products = np.empty(len(self._targets))
+        parts = np.split(self._products, stops[:-1] - n) if keys else []
+        self._parts = [part.reshape(k.shape) for part, k in zip(parts, keys, strict=True)]
         self.indices = (unique % n).astype(np.int32)
         self.indptr = np.searchsorted(unique, np.arange(n + 1) * n).astype(np.int32)
 
@@ -96,21 +100,14 @@ class NormalEquations:
         self, evaluations: Sequence[Evaluation], weights: Sequence[float]
     ) -> tuple[Floats, Floats]:
         """Entries of the upper triangle, (nonzeros,), and the gradient, (free,)."""
-        data = np.zeros(self.nonzeros + 1)
         gradient = np.zeros(len(self.free) + 1)
-        for e, w, columns, targets in zip(
-            evaluations, weights, self._columns, self._targets, strict=True
-        ):
-            i, j = np.triu_indices(columns.shape[1])
-            products = np.einsum("mri,mri->mi", e.values[:, :, i], e.values[:, :, j])
-            data += np.bincount(targets, products.ravel() * w, minlength=len(data))
+        for e, w, part, pulled in zip(evaluations, weights, self._parts, self._pulled, strict=True):
+            _products(e.values, part)
+            part *= w
             pull = np.einsum("mrk,mr->mk", e.values, e.residual)
-            gradient += np.bincount(
-                np.where(columns < 0, len(self.free), columns).ravel(),
-                pull.ravel() * w,
-                minlength=len(gradient),
-            )
-        return data[:-1], gradient[:-1]
+            gradient += np.bincount(pulled, pull.ravel() * w, minlength=len(gradient))
+        data = np.bincount(self._targets, self._products, self.nonzeros + 1)
+        return np.asarray(data[:-1], dtype=np.float64), gradient[:-1]
 
     def damped(self, data: Floats, damping: float) -> Floats:
         """*data* with *damping* added to the diagonal."""
@@ -123,6 +120,15 @@ class NormalEquations:
         full = np.zeros(self.size)
         full[self.free] = step
         return full
+
+
+def _products(values: Floats, into: Floats) -> None:
+    """The upper triangle of every element's J^T J, row by row; (m, rows, k) to (m, pairs)."""
+    width, at = values.shape[2], 0
+    for k in range(width):
+        row = into[:, at : at + width - k]
+        np.einsum("mr,mri->mi", values[:, :, k], values[:, :, k:], out=row)
+        at += width - k
 
 
 def _pair_keys(columns: Indices, n: int) -> Indices:
@@ -161,7 +167,7 @@ class _Pardiso:
     """MKL PARDISO, symmetric positive definite, analysis kept between factorisations."""
 
     def __init__(self, equations: NormalEquations, engine: Engine) -> None:
-        _point_to_mkl()
+        _prepare_mkl()
         from pypardiso import PyPardisoSolver
 
         self._solver = PyPardisoSolver(mtype=2)
@@ -220,7 +226,7 @@ def pardiso_solve(upper: csr_matrix, right: Floats, engine: Engine) -> Floats:
     SolveError
         When the matrix cannot be factored.
     """
-    _point_to_mkl()
+    _prepare_mkl()
     from pypardiso import PyPardisoSolver
     from pypardiso.pardiso_wrapper import PyPardisoError
 
@@ -250,8 +256,13 @@ def _pardiso_settings(repeatable_threads: int) -> dict[int, int]:
     }
 
 
-def _point_to_mkl() -> None:
-    """Tell pypardiso where MKL lies: its own search walks the whole environment (0.4 s)."""
+def _prepare_mkl() -> None:
+    """Tell pypardiso where MKL lies, and MKL's threads to sleep between two factorisations.
+
+    Its own search walks the whole environment (0.4 s); threads that spin take a core from all that
+    runs meanwhile, a browser that draws the net among it.
+    """
+    os.environ.setdefault("KMP_BLOCKTIME", "0")
     if "PYPARDISO_MKL_RT" not in os.environ:
         for folder in ("lib", "Library/bin"):
             for library in sorted(Path(sys.prefix, folder).glob("*mkl_rt*")):
