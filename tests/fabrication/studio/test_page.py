@@ -1,59 +1,23 @@
 """A click through the studio in a browser; what it shows against what report.json says."""
 
 import json
-import os
-import re
-import signal
 import socket
-import subprocess
-import sys
-import time
 import tomllib
 
 import pytest
 
 pytestmark = pytest.mark.xdist_group("browser")
 
-MAIN = "from fabrication.cli import main; main()"
-
 WAIT = 60_000
 
 
-class Studio:
-    """A running ``gridshell view`` and its address."""
-
-    def __init__(self, path, *more):
-        command = [sys.executable, "-c", MAIN, "view", str(path), "--no-browser"]
-        alone = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST")}
-        self.process = subprocess.Popen(
-            [*command, *more],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env=alone,
-        )
-        self.said = self.process.stdout.readline()
-        found = re.search(r"http://\S+", self.said)
-        self.address = found[0] if found else None
-
-    def end(self):
-        self.process.send_signal(signal.SIGINT)
-        more, _ = self.process.communicate(timeout=20)
-        return self.process.returncode, more
-
-
-def opened(chromium, address, told=None):
+def opened(chromium, studio, told=None):
     page = chromium.new_page(viewport={"width": 1500, "height": 950})
     page.set_default_timeout(WAIT)
     if told is not None:
         page.on("pageerror", lambda error: told.append(str(error)))
         page.on("request", lambda request: told.append(request.url))
-    for _ in range(60):
-        try:
-            page.goto(address)
-            break
-        except Exception:  # noqa: BLE001 - the server is about to listen
-            time.sleep(0.25)
+    studio.visit(page)
     ready(page)
     return page
 
@@ -85,16 +49,13 @@ def turn(page, key, presses):
 
 
 @pytest.fixture
-def studio(path):
-    running = Studio(path)
-    yield running
-    if running.process.poll() is None:
-        running.end()
+def studio(path, start_studio):
+    return start_studio(path)
 
 
 def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
     told = []
-    page = opened(chromium, studio.address, told)
+    page = opened(chromium, studio, told)
 
     # the net as it is
     assert page.locator(".gs-name").first.inner_text() == "pavilion"
@@ -167,7 +128,7 @@ def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
 
 
 def test_a_number_can_be_typed_and_a_wrong_one_is_explained(chromium, studio):
-    page = opened(chromium, studio.address)
+    page = opened(chromium, studio)
     typed(page, "net.angle").fill("62.35")
     typed(page, "net.angle").press("Enter")
     page.wait_for_timeout(300)
@@ -183,18 +144,18 @@ def test_a_number_can_be_typed_and_a_wrong_one_is_explained(chromium, studio):
 
 
 def test_a_browser_that_goes_away_finds_everything_again(chromium, studio):
-    first = opened(chromium, studio.address)
+    first = opened(chromium, studio)
     turn(first, "profile.width", 5)
     assert typed(first, "profile.width").input_value() == "85"
     first.close()
-    again = opened(chromium, studio.address)
+    again = opened(chromium, studio)
     assert typed(again, "profile.width").input_value() == "85"
     assert again.get_by_role("button", name="Undo").is_enabled()
     again.close()
 
 
 def test_what_another_program_wrote_is_told_and_can_be_loaded(chromium, studio, path):
-    page = opened(chromium, studio.address)
+    page = opened(chromium, studio)
     path.write_text(path.read_text().replace("70.0", "64.0"))
     page.get_by_text("was changed by another program").wait_for()
     page.get_by_role("button", name="Load it").click()
@@ -204,43 +165,30 @@ def test_what_another_program_wrote_is_told_and_can_be_loaded(chromium, studio, 
     page.close()
 
 
-def test_a_solve_that_fails_says_so_on_the_page(chromium, path):
+def test_a_solve_that_fails_says_so_on_the_page(chromium, start_studio, path):
     path.write_text(path.read_text().replace('anchor = "free"', 'anchor = "free"\nsteps = 5'))
-    studio = Studio(path)
-    try:
-        page = chromium.new_page()
-        page.set_default_timeout(WAIT)
-        for _ in range(60):
-            try:
-                page.goto(studio.address)
-                break
-            except Exception:  # noqa: BLE001 - the server is about to listen
-                time.sleep(0.25)
-        page.locator("[data-mark=trouble]").wait_for()
-        assert "steps" in page.locator("[data-mark=trouble]").inner_text()
-        page.close()
-    finally:
-        studio.end()
+    studio = start_studio(path)
+    page = chromium.new_page()
+    page.set_default_timeout(WAIT)
+    studio.visit(page)
+    page.locator("[data-mark=trouble]").wait_for()
+    assert "steps" in page.locator("[data-mark=trouble]").inner_text()
+    page.close()
 
 
 def test_without_the_token_the_door_is_shut(chromium, studio):
     page = chromium.new_page()
-    for _ in range(60):
-        try:
-            answer = page.goto(studio.address.split("?")[0])
-            break
-        except Exception:  # noqa: BLE001 - the server is about to listen
-            time.sleep(0.25)
+    answer = studio.visit(page, studio.address.split("?")[0])
     assert answer.status == 403
     page.close()
 
 
-def test_a_port_in_use_is_named(path):
+def test_a_port_in_use_is_named(start_studio, path):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        studio = Studio(path, "--port", str(port))
+        studio = start_studio(path, "--port", str(port))
         studio.process.wait(timeout=30)
     said = studio.said + studio.process.stdout.read()
     assert studio.process.returncode == 2
@@ -249,8 +197,8 @@ def test_a_port_in_use_is_named(path):
     assert "Traceback" not in said
 
 
-def test_a_project_that_cannot_be_read_is_named(tmp_path):
-    studio = Studio(tmp_path / "nowhere.toml")
+def test_a_project_that_cannot_be_read_is_named(start_studio, tmp_path):
+    studio = start_studio(tmp_path / "nowhere.toml")
     studio.process.wait(timeout=30)
     assert studio.process.returncode == 2
     assert "nowhere.toml" in studio.said
