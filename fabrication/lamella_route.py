@@ -22,6 +22,7 @@ from fabrication.joint_sections import JointSection, SlottedJoint
 from fabrication.joint_settings import joint_of
 from fabrication.jointed import Jointed
 from fabrication.joints import HingedJoint
+from fabrication.lamella_design import Plans
 from fabrication.lamella_sections import FlatSection
 from fabrication.lamella_stock import (
     BarStock,
@@ -31,7 +32,7 @@ from fabrication.lamella_stock import (
     other_sheets,
     strip_sheets,
 )
-from fabrication.lamella_system import LamellaSystem, Plans
+from fabrication.lamella_system import LamellaSystem
 from fabrication.motion import motion
 from fabrication.motion_checks import motion_findings
 from fabrication.moving import Moving

@@ -344,7 +344,7 @@ class AskedError(Exception):
 def asked(monkeypatch, tmp_path):
     """What the [net] of a project asks of the optimisation: recipe, anchor and reference."""
 
-    def stop(control, recipe, *, anchor, reference=None, progress=None):
+    def stop(control, recipe, *, anchor, reference=None, progress=None, workspace=None):
         raise AskedError(recipe, anchor, reference)
 
     monkeypatch.setattr(gs, "optimize", stop)
@@ -649,7 +649,7 @@ def test_a_failure_while_writing_leaves_nothing(tmp_path, monkeypatch):
     def full(*args):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("fabrication.export.schedule.write_schedule", full)
+    monkeypatch.setattr("fabrication.lamella_files.write_schedule", full)
     with pytest.raises(OSError, match="No space left"):
         fab.run(project(), tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
