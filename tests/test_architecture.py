@@ -16,7 +16,7 @@ import sys
 import fabrication.cli
 from fabrication.project import read_project
 read_project("examples/01_enneper_60.toml")
-heavy = {"OCP", "build123d", "cadquery", "scipy", "plotly", "ezdxf"} & set(sys.modules)
+heavy = {"OCP", "build123d", "cadquery", "scipy", "ezdxf"} & set(sys.modules)
 assert not heavy, heavy
 print("light")
 """

@@ -1,28 +1,22 @@
-"""A motion as one HTML page with a slider; it opens from disk."""
+"""A motion as one HTML page: the shell in every position, and what each position asks for."""
 
 from __future__ import annotations
 
-import base64
-import json
 from math import degrees
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 
 from fabrication.colours import FAMILY_COLOURS, css
-from fabrication.export.motion_glb import strip_triangles
+from fabrication.export.line_chart import Course, line_chart
+from fabrication.export.scene.layers import Scene
+from fabrication.export.scene.motion import motion_layers
+from fabrication.export.scene.page import as_json, scripts, style
+from fabrication.export.scene.whole import middle
 from fabrication.motion import Motion, MotionStep
 from fabrication.words import fixed, plural
-
-_STEPS = 65_535
-"""Places along the largest side that coordinates are rounded to."""
-
-_EVERY = 2
-"""Of the places along a strip, one in so many is drawn."""
 
 _LABELS = (
     ("opening", "Opening"),
@@ -39,7 +33,7 @@ _LABELS = (
 
 
 def write_motion_page(path: Path | str, found: Motion, *, name: str, opening: float) -> None:
-    """Write the page; it begins at the position nearest to *opening*."""
+    """Write the page; it begins at the position nearest to *opening* and opens from disk."""
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -47,7 +41,8 @@ def write_motion_page(path: Path | str, found: Motion, *, name: str, opening: fl
         lstrip_blocks=True,
     )
     environment.filters.update(fixed=fixed, plural=plural)
-    openings = [step.opening for step in found.steps]
+    centre = middle(np.concatenate([step.strips.reshape(-1, 3) for step in found.steps]))
+    texts = [_texts(step) for step in found.steps]
     page = environment.get_template("motion.html").render(
         name=name,
         steps=found.steps,
@@ -56,52 +51,43 @@ def write_motion_page(path: Path | str, found: Motion, *, name: str, opening: fl
         cables=found.umbrella.ribs,
         low=found.cable.low,
         high=found.cable.high,
-        begin=int(np.argmin(np.abs(np.array(openings) - opening))),
         labels=_LABELS,
-        data=Markup(json.dumps(_data(found)).replace("<", "\\u003c")),
-        plotly=Markup(get_plotlyjs()),
+        texts=as_json({key: [text[key] for text in texts] for key, _ in _LABELS}),
+        shares=as_json([round(share, 4) for share in _shares(found)]),
+        charts=[Markup(svg) for svg in _charts(found)],
+        colours={family: css(colour) for family, colour in FAMILY_COLOURS.items()},
+        scene=as_json(Scene(motion_layers(found, centre, opening)).packed()),
+        scripts=scripts(),
+        viewer_style=style(),
     )
     Path(path).write_text(page, encoding="utf-8")
 
 
-def _data(found: Motion) -> dict[str, Any]:
-    """Positions as whole numbers of a grid over the whole motion, in metres."""
-    strips = np.stack([step.strips[:, ::_EVERY] for step in found.steps]) / 1000.0
-    count, places = strips.shape[1:3]
-    points = strips.reshape(len(strips), -1, 3)
-    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
-    scale = float((high - low).max()) / _STEPS
-    whole = np.round((points - low) / scale).astype("<u2")
-    frames = [base64.b64encode(frame.tobytes()).decode() for frame in whole]
-    meshes = []
-    for family, first, last in ((1, 0, found.first), (2, found.first, count)):
-        i, j, k = strip_triangles(last - first, places).T.tolist()
-        meshes.append(
-            {
-                "name": f"family {'AB'[family - 1]}",
-                "colour": css(FAMILY_COLOURS[family]),
-                "from": first * places * 2,
-                "to": last * places * 2,
-                "i": i,
-                "j": j,
-                "k": k,
-            }
-        )
-    texts = [_texts(step) for step in found.steps]
-    return {
-        "low": low.tolist(),
-        "size": (high - low).tolist(),
-        "scale": scale,
-        "frames": frames,
-        "meshes": meshes,
-        "texts": {key: [text[key] for text in texts] for key, _ in _LABELS},
-        "steps": {
-            "opening": [round(step.opening, 4) for step in found.steps],
-            "smallest": [round(degrees(step.angles[0]), 2) for step in found.steps],
-            "largest": [round(degrees(step.angles[1]), 2) for step in found.steps],
-            "used": [round(100.0 * step.utilisation, 1) for step in found.steps],
-        },
-    }
+def _shares(found: Motion) -> list[float]:
+    """How far along the charts each position stands, 0 to 1."""
+    openings = np.array([step.opening for step in found.steps])
+    along = (openings - openings[0]) / max(float(openings[-1] - openings[0]), 1e-12)
+    return list(along.tolist())
+
+
+def _charts(found: Motion) -> list[str]:
+    """Node angles and strength over the opening, SVG."""
+    x = 100.0 * np.array([step.opening for step in found.steps])
+    angles = np.degrees([step.angles for step in found.steps])
+    used = np.array([100.0 * step.utilisation for step in found.steps])
+    first, second = (css(colour) for colour in FAMILY_COLOURS.values())
+    strength = [Course("largest", second, used)]
+    axis = "opening, %"
+    return [
+        line_chart(
+            x,
+            [Course("smallest", second, angles[:, 0]), Course("largest", first, angles[:, 1])],
+            title="Node angles",
+            unit="degrees",
+            axis=axis,
+        ),
+        line_chart(x, strength, title="Strength used", unit="%", axis=axis),
+    ]
 
 
 def _texts(step: MotionStep) -> dict[str, str]:

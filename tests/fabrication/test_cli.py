@@ -463,7 +463,7 @@ try:
     main()
 except SystemExit as stopped:
     assert not stopped.code, stopped.code
-heavy = {"OCP", "cadquery", "build123d", "scipy", "plotly", "ezdxf"} & set(sys.modules)
+heavy = {"OCP", "cadquery", "build123d", "scipy", "ezdxf"} & set(sys.modules)
 print("loaded:", sorted(heavy))
 """
 

@@ -98,7 +98,7 @@ def test_a_check_loads_nothing_heavy(tmp_path):
     code = (
         "import sys\nfrom fabrication.project import read_project\n"
         f"read_project({str(tmp_path / 'p.toml')!r})\n"
-        "heavy = {'OCP', 'build123d', 'scipy', 'trimesh', 'plotly'} & set(sys.modules)\n"
+        "heavy = {'OCP', 'build123d', 'scipy', 'trimesh'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -259,6 +259,12 @@ class Positions extends Faces {
     return points;
   }
 
+  // What the whole motion reaches to, about: the positions at its ends.
+  get reach() {
+    const { low, scale } = this.layer, ends = [this.frames[0], this.frames[this.frames.length - 1]];
+    return Float32Array.from(ends.flatMap((frame) => Array.from(frame, (step, n) => step * scale + low[n % 3])));
+  }
+
   open(number) {
     this.number = number;
     this.placed(this.points, this.layer.low, this.layer.scale);

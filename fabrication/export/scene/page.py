@@ -50,13 +50,16 @@ def style() -> Markup:
 
 
 def scripts() -> Markup:
-    """Two inert script elements, ``#three`` and ``#viewer``, that a page imports as modules."""
-    return Markup(
-        "".join(
-            f'<script type="text/plain" id="{name}">{_inert(text)}</script>\n'
-            for name, text in (("three", library()), ("viewer", viewer()))
-        )
+    """Inert script elements ``#three`` and ``#viewer``, and the function ``shell(root, options)``.
+
+    That one imports the two as modules, shows the page's ``#scene``, and promises the view.
+    """
+    inert = "".join(
+        f'<script type="text/plain" id="{name}">{_inert(text)}</script>\n'
+        for name, text in (("three", library()), ("viewer", viewer()))
     )
+    own = (_HERE / "shell.js").read_text(encoding="utf-8")
+    return Markup(f"{inert}<script>\n{own}</script>\n")
 
 
 def _inert(text: str) -> str:

@@ -37,7 +37,9 @@ class Entry {
 }
 
 // library: {THREE, OrbitControls}. pattern(mark): a promise of the SVG of a flat part, or null.
-export function viewer({ THREE, OrbitControls }, root, { pattern = async () => null, chosen = () => {} } = {}) {
+// chosen(mark), opened(number): hear what is picked, and which position of a motion is shown.
+// home: towards the eye, where one looks from at first.
+export function viewer({ THREE, OrbitControls }, root, { pattern = async () => null, chosen = () => {}, opened = () => {}, home = [0.62, -0.64, 0.46] } = {}) {
   root.classList.add("gv");
   root.replaceChildren();
   const bar = tag("div", "gv-bar"), stage = tag("div", "gv-stage"), side = tag("aside", "gv-side"), foot = tag("div", "gv-foot");
@@ -73,7 +75,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   const mark = new THREE.MeshBasicMaterial({ color: ACCENT, side: THREE.DoubleSide });
   const picker = new THREE.Raycaster();
 
-  const state = { layers: new Map(), maps: [], scale: [], table: null, map: null, bend: 1, opened: null, pending: false, picked: null, under: null, home: [0.62, -0.64, 0.46], frames: 0, rows: [], news: 0 };
+  const state = { layers: new Map(), maps: [], scale: [], table: null, map: null, bend: 1, opened: null, pending: false, picked: null, under: null, home, frames: 0, rows: [], news: 0 };
   let waiting = false, dragging = false;
 
   // ---- drawing ------------------------------------------------------------------------------
@@ -133,7 +135,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
 
   function everything() {
     const all = [];
-    for (const { layer, made: own, shown } of state.layers.values()) if (visible(layer, shown) && layer.kind !== "labels") all.push(own.points);
+    for (const { layer, made: own, shown } of state.layers.values()) if (visible(layer, shown) && layer.kind !== "labels") all.push(own.reach ?? own.points);
     if (!all.length) for (const { made: own } of state.layers.values()) all.push(own.points);
     return all.filter((points) => points.length);
   }
@@ -183,6 +185,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     for (const id of before.keys()) if (!pending || fresh.has(id)) remove(id);
     for (const layer of layers) add(layer, before.has(layer.id) ? before.get(layer.id) : pending ? false : layer.visible);
     Object.assign(state, { pending, scale, table: ramp(scale) });
+    if (onlyMoves() && state.opened === null) state.opened = motions()[0].layer.begin;
     if (!pending || first) state.maps = read(maps);
     else state.maps = [...read(maps), ...state.maps.filter(({ on }) => on !== "quads")];
     settle();
@@ -306,10 +309,10 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     }
     const kinds = [...state.layers.values()].map(({ layer }) => layer.kind);
     if (kinds.includes("strips")) parts.push(slider("Flat to built", 0, 100, Math.round(100 * state.bend), (value) => bend(value / 100), "gv-bend"));
-    const moving = [...state.layers.values()].find(({ layer }) => layer.kind === "positions");
+    const [moving] = motions();
     if (moving) {
       parts.push(slider("Opening", 0, moving.layer.frames.length - 1, moving.made.number, open, "gv-open"));
-      if (state.opened !== null) parts.push(button("As built", () => open(null)));
+      if (state.opened !== null && !onlyMoves()) parts.push(button("As built", () => open(null)));
     }
     foot.replaceChildren(...parts);
   }
@@ -323,6 +326,9 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   }
 
   // ---- motion -------------------------------------------------------------------------------
+
+  const motions = () => [...state.layers.values()].filter(({ layer }) => layer.kind === "positions");
+  const onlyMoves = () => motions().length > 0 && motions().length === state.layers.size;
 
   // Rows on the ground for all strips, one beside the other.
   function laid() {
@@ -363,7 +369,11 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   function open(number) {
     const before = state.opened;
     state.opened = number;
-    if (number !== null) for (const { layer, made: own } of state.layers.values()) if (layer.kind === "positions") own.open(number);
+    if (number !== null) {
+      for (const { made: own } of motions()) own.open(number);
+      foot.querySelector(".gv-open input").value = number;
+      opened(number);
+    }
     if ((before === null) !== (number === null)) {
       if (number === null) footed();
       else if (!foot.querySelector(".gv-back")) foot.append(Object.assign(button("As built", () => open(null)), { className: "gv-button gv-back" }));
@@ -487,6 +497,10 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   resized();
   return {
     ready: true, camera, replace, frame, bend, open, state,
+    only: (name) => {  // the layers of this name, and no others
+      for (const entry of state.layers.values()) entry.shown = entry.layer.name === name;
+      listed();
+    },
     select: (name) => pick(name === null ? null : find(name)),
     colour: (name) => { state.map = name; reveal(); shade(); barred(); },
     picture: () => { if (slow) smooth(); else render(); return renderer.domElement.toDataURL("image/png"); },

@@ -16,6 +16,7 @@ import gridshell as gs
 from fabrication.export.motion_glb import SECONDS, write_motion_glb
 from fabrication.export.motion_page import write_motion_page
 from fabrication.export.motion_schedule import COLUMNS, write_motion
+from fabrication.export.scene.page import scripts
 from fabrication.motion import motion
 
 
@@ -87,19 +88,53 @@ def test_every_accessor_lies_on_its_boundary_and_says_its_bounds(moved, tmp_path
             np.testing.assert_allclose(accessor.max, points.max(axis=0))
 
 
-def test_the_page_holds_every_position_to_a_tenth_of_a_millimetre(moved, tmp_path):
-    write_motion_page(tmp_path / "m.html", moved, name="a < b", opening=moved.steps[3].opening)
-    page = (tmp_path / "m.html").read_text()
+@pytest.fixture(scope="module")
+def page_path(moved, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "m.html"
+    write_motion_page(path, moved, name="a < b", opening=moved.steps[3].opening)
+    return path
+
+
+def test_the_page_holds_every_position_to_a_tenth_of_a_millimetre(moved, page_path):
+    page = page_path.read_text()
     assert "a &lt; b" in page
-    assert 'value="3"' in page
-    assert "http://" not in page.split("<script>")[0]
-    data = json.loads(re.search(r"const motion = (.*);\n", page).group(1))
-    low, scale = np.array(data["low"]), data["scale"]
-    for text, step in zip(data["frames"], moved.steps, strict=True):
-        whole = np.frombuffer(base64.b64decode(text), "<u2").reshape(-1, 3)
-        expected = step.strips[:, ::2].reshape(-1, 3)
-        assert np.abs(1000.0 * (whole * scale + low) - expected).max() < 0.1
-    for mesh in data["meshes"]:
-        faces = np.array([mesh["i"], mesh["j"], mesh["k"]])
-        assert faces.max() < mesh["to"] - mesh["from"]
-    assert len(data["texts"]["force"]) == 7
+    own = page.replace(scripts(), "")
+    assert "http" not in own.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
+    scene = json.loads(re.search(r'id="scene">(.*?)</script>', page)[1])
+    middle = [step.strips.reshape(-1, 3) for step in moved.steps]
+    low, high = (getattr(np.concatenate(middle), end)(axis=0) for end in ("min", "max"))
+    families = (slice(None, moved.first), slice(moved.first, None))
+    for layer, chosen in zip(scene["layers"], families, strict=True):
+        assert (layer["kind"], layer["begin"]) == ("positions", 3)
+        corner, scale = np.array(layer["low"]), layer["scale"]
+        for packed, step in zip(layer["frames"], moved.steps, strict=True):
+            whole = np.frombuffer(base64.b64decode(packed["bytes"]), "<u2").reshape(-1, 3)
+            shown = 1000.0 * (whole * scale + corner) + (low + high) / 2.0
+            assert np.abs(shown - step.strips[chosen, ::2].reshape(-1, 3)).max() < 0.1
+        faces = np.frombuffer(base64.b64decode(layer["faces"]["bytes"]), "<u4")
+        assert faces.max() < len(whole)
+
+
+def test_the_page_tells_the_figures_of_the_position_it_shows(moved, page_path, chromium):
+    page = chromium.new_page(viewport={"width": 1100, "height": 900})
+    page.goto(page_path.as_uri())
+    page.locator("#play:not([disabled])").wait_for()
+    slider = page.locator(".gv-open input")
+    assert slider.input_value() == "3"
+    for number in (3, 6, 0):
+        slider.evaluate(
+            "(box, to) => { box.value = to; box.dispatchEvent(new Event('input')); }", number
+        )
+        step = moved.steps[number]
+        told = page.locator("dd[data-key=height]").inner_text()
+        assert told == f"{step.height / 1000.0:.2f} m"
+        moved_by = page.locator(".chart .now").first.get_attribute("transform")
+        span = float(page.locator(".chart .now").first.get_attribute("data-span"))
+        ends = moved.steps[0].opening, moved.steps[-1].opening
+        share = (step.opening - ends[0]) / (ends[1] - ends[0])
+        assert float(re.search(r"[\d.]+", moved_by)[0]) == pytest.approx(share * span, abs=0.1)
+    page.locator("#play").click()
+    page.wait_for_timeout(400)
+    assert page.evaluate("view.state.opened") > 0
+    assert page.get_by_role("button", name="As built").count() == 0
+    page.close()

@@ -8,6 +8,8 @@ import pytest
 import gridshell as gs
 from fabrication.errors import OutputError
 from fabrication.export import stages as module
+from fabrication.export.scene.page import scripts
+from fabrication.export.stage_page import stage_scene
 from fabrication.export.stages import HOTTEST, heat, pictures, stages, view_of, write_stages
 from gridshell.mesh import grid_quads
 from gridshell.painter import Dots, Faces, Lines
@@ -140,10 +142,48 @@ def test_the_page_and_its_pictures_ask_for_nothing_outside(made, tmp_path):
     page = (tmp_path / "stages.html").read_text()
     assert "roof &lt;1&gt;" in page
     assert page.count("<figure>") == 5
-    ours = re.sub(r"<script>.*?</script>", "", page, flags=re.DOTALL)
+    ours = page.replace(scripts(), "")
     assert "http" not in ours.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
     assert "default-src 'none'" in ours
     assert len(list(tmp_path.glob("*.svg"))) == 5
+
+
+def test_one_stage_is_shown_at_a_time_and_all_of_it_is_there(made, tmp_path, chromium):
+    write_stages(tmp_path, made, name="roof")
+    page = chromium.new_page(viewport={"width": 1100, "height": 900})
+    page.goto((tmp_path / "stages.html").as_uri())
+    page.locator(".tabs button[aria-pressed=true]").wait_for()
+    tabs = page.locator(".tabs button")
+    names = tabs.all_inner_texts()
+    assert [name[0] for name in names] == list("abcde")
+    checked = page.locator(".gv-layer:has(input:checked)")
+    assert checked.all_inner_texts() == [names[2]]
+    for tab, name in enumerate(names):
+        tabs.nth(tab).click()
+        assert checked.all_inner_texts() == [name]
+    page.close()
+
+
+def test_the_scene_has_every_polygon_line_and_dot_in_its_colour(made):
+    found = stages(made)
+    scene = stage_scene(found)
+    for stage in found:
+        own = [one for one in scene.layers if one.name[0] == stage.letter]
+        for kind, drawn in ((Faces, "faces"), (Lines, "lines"), (Dots, "dots")):
+            wanted = [one for one in stage.layers if isinstance(one, kind)]
+            shown = [one for one in own if one.kind == drawn]
+            count = sum(len(one.colours) for one in wanted)
+            if kind is Faces:
+                assert sum(len(one.sizes) for one in shown) == count
+                for layer, whole in zip(wanted, shown, strict=True):
+                    np.testing.assert_array_equal(whole.colours, layer.colours)
+                    corners = whole.points[whole.triangles[:: whole.sizes[0], 0]]
+                    size = np.ptp(layer.corners[:, 0], axis=0) / 1e3
+                    np.testing.assert_allclose(np.ptp(corners, axis=0), size, atol=1e-5)
+            elif kind is Lines:
+                assert sum(len(one.pairs) for one in shown) == count
+            else:
+                assert sum(len(one.points) for one in shown) == count
 
 
 def test_a_folder_that_is_not_there_is_an_error(made, tmp_path):

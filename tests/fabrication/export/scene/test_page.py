@@ -20,7 +20,7 @@ def test_the_viewer_is_one_module_without_imports():
 
 def test_scripts_cannot_end_early():
     found = scripts()
-    assert found.count("<script") == found.count("</script") == 2
+    assert found.count("<script") == found.count("</script") == 3
     assert "sourceMappingURL" not in found
 
 
