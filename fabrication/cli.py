@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
@@ -77,11 +78,23 @@ class _TerminatedError(BaseException):
 
 def main() -> None:
     """Run the command; whatever goes wrong ends with one message and an exit code."""
+    with _interrupts_noted() as interrupts:
+        _run_app(interrupts)
+
+
+def _run_app(interrupts: list[int]) -> None:
     try:
         app()
+    except SystemExit as end:
+        left = end.__context__
+        if left is not None and isinstance(left.__cause__, KeyboardInterrupt):
+            _fail("Interrupted.", 130)
+        raise
     except Exception as error:
         from gridshell.errors import GridshellError
 
+        if interrupts:  # a library that was being loaded may turn one into an error of its own
+            _fail("Interrupted.", 130)
         if isinstance(error, GridshellError):
             _fail(str(error), 2)
         if isinstance(error, MemoryError):
@@ -96,6 +109,22 @@ def main() -> None:
             "developers of gridshell, with the project file and what --debug prints.",
             70,
         )
+
+
+@contextmanager
+def _interrupts_noted() -> Iterator[list[int]]:
+    """Ctrl-C as ever, and a note of each."""
+    noted: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> NoReturn:
+        noted.append(number)
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield noted
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @app.callback(invoke_without_command=True)

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 import tomllib
 from importlib.metadata import version
 
@@ -424,6 +425,35 @@ def test_an_interrupted_run_says_so(interrupted):
     _, (_, out, err) = interrupted
     assert out == ""
     assert "Interrupted. Nothing was written." in err
+
+
+def test_ctrl_c_is_told_by_commands_that_write_nothing_first(command, tmp_path, monkeypatch):
+    def stop(*args, **more):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fabrication.gallery.build", stop)
+    code, out, err = command("gallery", "-o", tmp_path / "g")
+    assert (code, out, err) == (130, "", "gridshell: Interrupted.\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_while_a_library_is_loaded_is_no_fault_of_the_program(
+    command, write, tmp_path, monkeypatch
+):
+    """A compiled module that is interrupted raises an ImportError of its own."""
+
+    def stop(*args, **more):
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(5.0)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+
+    monkeypatch.setattr("fabrication.lamella_system.fit", stop)
+    path = write()
+    code, _, err = command("run", path, "--out", tmp_path / "out", "--quiet")
+    assert (code, err) == (130, "gridshell: Interrupted.\n")
+    assert list(tmp_path.iterdir()) == [path]
 
 
 TERMINATED = """
