@@ -1,6 +1,6 @@
 """Meshes of parts to look at: columns along a strip, and prisms with their openings.
 
-Fine enough for the eye; exact ones are in the STEP file.
+Fine enough for the eye; finer ones go to other programs, exact ones into the STEP file.
 """
 
 from __future__ import annotations
@@ -44,9 +44,15 @@ def _depth(slot: Slot) -> float:
     return float(slot.depth + rounded)
 
 
-def shape_mesh(shape: Shape) -> tuple[Points, Indices]:
-    """Points (n, 3), mm, and triangles (m, 3), facing outwards, of a shape with its openings."""
-    rings = [corners(shape.outline, _STEP), *(corners(o, _STEP)[::-1] for o in shape.openings)]
+def shape_mesh(shape: Shape, *, fine: bool = False) -> tuple[Points, Indices]:
+    """Points (n, 3), mm, and triangles (m, 3), facing outwards, of a shape with its openings.
+
+    Parameters
+    ----------
+    fine : arcs within 0.01 mm, for other programs.
+    """
+    step = None if fine else _STEP
+    rings = [corners(shape.outline, step), *(corners(o, step)[::-1] for o in shape.openings)]
     flat = np.concatenate(rings)
     caps = np.asarray(triangulate(rings), dtype=np.int64).reshape(-1, 3)
     count = len(flat)

@@ -88,7 +88,7 @@ class Model:
 def lamella_model(
     name: str, jointed: Jointed, parts: Sequence[FlatPart], more: Bodies | None = None
 ) -> Model:
-    """Strips with their slots, connectors, and *more* bodies; of tubes the outer sides."""
+    """Strips with their slots and holes, connectors, and *more* bodies."""
     density = jointed.design.profile.material.density
     items = []
     for strip, part in zip(jointed.strips.lamellas, parts, strict=True):
@@ -127,7 +127,7 @@ def bodies_model(name: str, bodies: Bodies) -> Model:
 
 
 def _body_items(bodies: Bodies) -> Iterator[Item]:
-    meshes = [shape_mesh(shape) for shape in bodies.shapes]
+    meshes = [shape_mesh(shape, fine=True) for shape in bodies.shapes]
     for kind in bodies.kinds:
         for body in kind.bodies:
             points, triangles = meshes[body.shape]
