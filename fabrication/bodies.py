@@ -27,6 +27,7 @@ def _panels(built: PanelStructure) -> Prisms:
         [p.frame for p in built.panels],
         equal_groups(outlines, SAME, prefix="G"),
         (0.0, built.system.panels.thickness),
+        built.system.panels.material,
     )
 
 
@@ -41,6 +42,7 @@ def _plates(built: PanelStructure) -> Prisms:
         [p.frame for p in built.plates],
         equal_groups(outlines, SAME, prefix="H", mirror=True),
         (-half, half),
+        None if built.system.plates is None else built.system.plates.material,
     )
 
 
@@ -54,4 +56,5 @@ def _connectors(built: PanelStructure) -> Prisms:
         [piece.frame for piece in pieces],
         sections_alike(pieces, SAME),
         (0.0, pieces[0].height if pieces else 0.0),
+        built.system.connector_material,
     )

@@ -62,11 +62,17 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """All bodies of a kind: what they are called, their colour, what they are."""
+    """All bodies of a kind: what they are called, their colour, what they are, and of what.
+
+    Parameters
+    ----------
+    material : None where it is told elsewhere.
+    """
 
     name: str
     colour: Colour
     bodies: tuple[Body, ...]
+    material: Material | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +110,7 @@ def joined(*sets: Prisms) -> Bodies:
             first = len(shapes)
             shapes += prisms.shapes
             moved = (Body(b.mark, b.shape + first, b.frame) for b in prisms.bodies)
-            kinds.append(Kind(prisms.name, prisms.colour, tuple(moved)))
+            kinds.append(Kind(prisms.name, prisms.colour, tuple(moved), prisms.material))
     return Bodies(tuple(shapes), tuple(kinds))
 
 
@@ -116,6 +122,7 @@ def prisms(
     frames: Sequence[Frame],
     groups: Sequence[Group],
     span: tuple[float, float],
+    material: Material | None = None,
 ) -> Prisms:
     """One body per outline, in their order, each group with the shape of its first member.
 
@@ -124,6 +131,7 @@ def prisms(
     outlines : (k, 2), or (k, 3) with bulges, each in its own frame.
     groups : a member may be turned over where *span* is even about nought.
     span : lower and upper end across the frames, mm.
+    material : what they are made of.
     """
     shapes = []
     bodies: dict[int, Body] = {}
@@ -134,7 +142,8 @@ def prisms(
             here, outline = frames[member.index], outlines[member.index]
             there = instance_frame(outlines[first][:, :2], outline[:, :2], here, member)
             bodies[member.index] = Body(marks[member.index], number, there)
-    return Prisms(name, colour, tuple(shapes), tuple(bodies[i] for i in range(len(marks))))
+    placed = tuple(bodies[i] for i in range(len(marks)))
+    return Prisms(name, colour, tuple(shapes), placed, material)
 
 
 def with_bulges(outline: Floats) -> Floats:

@@ -6,12 +6,17 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from fabrication.flattening import corners
+from fabrication.grouping import equal_groups
 from fabrication.nesting import NestedSheet, SheetPart
 from fabrication.parts import FlatPart
 from fabrication.stock import Material
 
 _SAME = 3
 """Digits behind the point, mm, to which equal parts agree."""
+
+_TURNED = 0.01
+"""Between corners of plates that are equal once they are turned, mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,16 +67,30 @@ def counted(cut: CutSet) -> tuple[Counted, ...]:
     goes to any place.
     """
     groups: dict[tuple[object, ...], list[SheetPart]] = {}
-    for part in cut.parts:
-        groups.setdefault(_key(part), []).append(part)
+    for part, turned in zip(cut.parts, _turned_alike(cut.parts), strict=True):
+        groups.setdefault(_key(part, turned), []).append(part)
     return tuple(_counted(group) for group in groups.values())
 
 
-def _key(part: SheetPart) -> tuple[object, ...]:
+def _turned_alike(parts: Sequence[SheetPart]) -> list[str]:
+    """A name for every part: the same for plates without holes that are equal once turned."""
+    names = [""] * len(parts)
+    plain = [k for k, p in enumerate(parts) if not isinstance(p, FlatPart) and not len(p.circles)]
+    outlines = [corners(parts[k].outline) for k in plain]
+    for group in equal_groups(outlines, _TURNED, prefix="T"):
+        for member in group.members:
+            names[plain[member.index]] = group.name
+    return names
+
+
+def _key(part: SheetPart, turned: str) -> tuple[object, ...]:
     if isinstance(part, FlatPart):
         return (part.mark,)
+    thickness = round(part.thickness, _SAME)
+    if turned:
+        return (thickness, turned)
     lines = (part.outline.round(_SAME) + 0.0, part.circles.round(_SAME) + 0.0)
-    return (round(part.thickness, _SAME), *(line.tobytes() for line in lines))
+    return (thickness, *(line.tobytes() for line in lines))
 
 
 def _counted(group: Sequence[SheetPart]) -> Counted:

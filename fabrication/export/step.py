@@ -8,11 +8,9 @@ the end, whose order the kernel takes from where they lie in memory.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Sequence
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from datetime import datetime
 from itertools import count
 from pathlib import Path
 
@@ -23,6 +21,7 @@ from OCP.Message import Message
 
 from fabrication.colours import FAMILY_COLOURS
 from fabrication.errors import OutputError
+from fabrication.export.stamp import now, program
 from fabrication.export.step_text import compact
 from fabrication.structures import Structure
 
@@ -79,7 +78,7 @@ def sign(path: Path, name: str, description: str, written: datetime | None) -> N
     """Put our header and *name* into a file the kernel wrote; errors as `write_step`."""
     try:
         content = path.read_bytes()
-        path.write_bytes(_signed(content, name, path.name, description, written or _now()))
+        path.write_bytes(_signed(content, name, path.name, description, written or now()))
     except OSError as error:
         raise OutputError(
             "The STEP file cannot be written", where=str(path), value=error.strerror or ""
@@ -98,7 +97,7 @@ def _signed(content: bytes, name: str, file: str, description: str, written: dat
         "HEADER;",
         f"FILE_DESCRIPTION(({step_string(description)}),'2;1');",
         f"FILE_NAME({step_string(file)},'{written:%Y-%m-%dT%H:%M:%S}',(''),(''),",
-        f"  '{processor[1].decode() if processor else ''}','{_program()}','');",
+        f"  '{processor[1].decode() if processor else ''}','{program()}','');",
         schema[0].decode() if schema else "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));",
         "ENDSEC;",
         "DATA;",
@@ -125,18 +124,6 @@ def step_string(text: str) -> str:
         else:
             pieces.append(run.replace("\\", "\\\\").replace("'", "''"))
     return "'" + "".join(pieces) + "'"
-
-
-def _program() -> str:
-    try:
-        return f"gridshell {version('gridshell')}"
-    except PackageNotFoundError:  # run from a source tree
-        return "gridshell"
-
-
-def _now() -> datetime:
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    return datetime.fromtimestamp(int(epoch), UTC) if epoch.isdecimal() else datetime.now(UTC)
 
 
 def quiet() -> None:

@@ -23,8 +23,8 @@ def write_glb(path: Path, model: Model) -> None:
         for item in items:
             mesh = trimesh.Trimesh(upright(item.points), item.triangles, process=False)
             mesh.visual = trimesh.visual.TextureVisuals(material=_material(item))
-            mesh.metadata.update(item.numbers)
-            scene.add_geometry(mesh, item.mark, geom_name=item.mark, parent_node_name=layer)
+            mesh.metadata.update({"mark": item.mark, **item.numbers})
+            scene.add_geometry(mesh, item.name, geom_name=item.name, parent_node_name=layer)
     path.write_bytes(scene.export(file_type="glb"))
 
 
@@ -40,7 +40,7 @@ def write_obj_groups(path: Path, model: Model) -> None:
     lines, first = ["# unit: mm"], 1
     for layer, items in model.layers.items():
         for item in items:
-            lines += [f"o {item.mark}", f"g {layer.replace(' ', '_')}"]
+            lines += [f"o {item.name.replace(' ', '_')}", f"g {layer.replace(' ', '_')}"]
             lines += [f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in item.points.tolist()]
             lines += [f"f {a} {b} {c}" for a, b, c in (item.triangles + first).tolist()]
             first += len(item.points)

@@ -11,9 +11,10 @@ from fabrication.colours import FAMILY_COLOURS
 from fabrication.export.interchange.strip_mesh import strip_mesh
 from fabrication.export.view_meshes import shape_mesh
 from fabrication.jointed import Jointed
+from fabrication.materials import Material
 from fabrication.outlines import Frame
 from fabrication.parts import FlatPart
-from fabrication.shapes import Bodies, Colour, joined
+from fabrication.shapes import Bodies, Colour, Shape, joined
 from gridshell.arrays import Indices, Points
 
 Value = str | float | int
@@ -25,12 +26,13 @@ class Item:
 
     Parameters
     ----------
-    mark : its name.
+    mark : what is engraved on it.
     layer : what it belongs to: "family A", "bolts", "panels".
     colour : sRGB, 0 to 1.
     points, triangles : (n, 3) mm and (m, 3), closed, facing outwards.
     axis : (k, 3) mm, of strips; None for other parts.
     numbers : what lists say of it, by name: "length_mm", ...
+    segment : "segment-1", ... where the same is built several times.
     """
 
     mark: str
@@ -40,6 +42,12 @@ class Item:
     triangles: Indices
     axis: Points | None = None
     numbers: dict[str, Value] = field(default_factory=dict)
+    segment: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its mark, with the segment it stands in where equal ones stand in others."""
+        return f"{self.segment} {self.mark}".strip()
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,13 +74,14 @@ class Model:
         return found
 
     def repeated(self, poses: Sequence[Frame]) -> Model:
-        """The same at every one of *poses*; names begin with "segment-1" and so on."""
+        """The same at every one of *poses*, in segments "segment-1" and so on."""
         items = tuple(
             replace(
                 item,
-                mark=f"segment-{number} {item.mark}",
+                segment=f"segment-{number}",
                 points=pose.place(item.points),
                 axis=None if item.axis is None else pose.place(item.axis),
+                numbers={**item.numbers, **({"quantity": 1} if "quantity" in item.numbers else {})},
             )
             for number, pose in enumerate(poses, start=1)
             for item in self.items
@@ -115,7 +124,7 @@ def lamella_model(
                 },
             )
         )
-    items += _body_items(joined(*jointed.connectors))
+    items += _with_heads(list(_body_items(joined(*jointed.connectors))))
     items += () if more is None else _body_items(more)
     nodes = tuple((node.name, np.asarray(node.position)) for node in jointed.design.nodes)
     return Model(name, tuple(items), nodes)
@@ -131,4 +140,43 @@ def _body_items(bodies: Bodies) -> Iterator[Item]:
     for kind in bodies.kinds:
         for body in kind.bodies:
             points, triangles = meshes[body.shape]
-            yield Item(body.mark, kind.name, kind.colour, body.frame.place(points), triangles)
+            yield Item(
+                mark=body.mark,
+                layer=kind.name,
+                colour=kind.colour,
+                points=body.frame.place(points),
+                triangles=triangles,
+                numbers=_numbers(bodies.shapes[body.shape], kind.material),
+            )
+
+
+def _numbers(shape: Shape, material: Material | None) -> dict[str, Value]:
+    """Size and mass: of round bars diameter and length, of all else the thickness."""
+    high = round(shape.high - shape.low, 3)
+    across = round(float(np.ptp(shape.outline[:, 0])), 3)
+    is_round = len(shape.outline) == 2 and not shape.openings
+    size: dict[str, Value] = (
+        {"diameter_mm": across, "length_mm": high}
+        if is_round and high > across
+        else {"thickness_mm": high}
+    )
+    if material is None:
+        return size
+    mass = round(shape.volume * material.density * 1e-9, 5)
+    return {**size, "mass_kg": mass, "material": material.name}
+
+
+def _with_heads(items: Sequence[Item]) -> list[Item]:
+    """Bolts in one piece with their heads; nuts stay alone."""
+    heads = {item.mark: item for item in items if item.mark.endswith("-head")}
+    found = []
+    for item in items:
+        head = heads.get(f"{item.mark.removesuffix('-bolt')}-head")
+        if item.mark in heads:
+            continue
+        if item.mark.endswith("-bolt") and head is not None:
+            points = np.concatenate([item.points, head.points])
+            triangles = np.concatenate([item.triangles, head.triangles + len(item.points)])
+            item = replace(item, points=points, triangles=triangles)
+        found.append(replace(item, layer=item.layer.replace("heads and nuts", "nuts")))
+    return found

@@ -57,8 +57,9 @@ def _layer(rhino: Any, file: Any, name: str, colour: tuple[float, float, float])
 
 def _attributes(rhino: Any, item: Item, layer: int) -> Any:
     attributes = rhino.ObjectAttributes()
-    attributes.Name, attributes.LayerIndex = item.mark, layer
-    for key, value in {"mark": item.mark, **item.numbers}.items():
+    attributes.Name, attributes.LayerIndex = item.name, layer
+    segment = {"segment": item.segment} if item.segment else {}
+    for key, value in {"mark": item.mark, **segment, **item.numbers}.items():
         attributes.SetUserString(key, f"{value}")
     return attributes
 

@@ -6,11 +6,10 @@ are counted before the first one is drawn, so that every title block says which 
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import UTC, date, datetime
+from datetime import date
 from pathlib import Path
 
 from reportlab.lib.units import mm
@@ -18,6 +17,7 @@ from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.pdfgen.canvas import Canvas
 
 from fabrication.errors import OutputError
+from fabrication.export.stamp import now
 from gridshell import SettingError
 
 SIZES = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0)}
@@ -65,9 +65,7 @@ class Titles:
 
 def today() -> date:
     """The date of ``SOURCE_DATE_EPOCH`` where that is set, else today."""
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    now = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdecimal() else datetime.now(UTC)
-    return now.date()
+    return now().date()
 
 
 @dataclass(frozen=True)

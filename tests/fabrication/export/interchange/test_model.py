@@ -5,12 +5,15 @@ import trimesh
 import fabrication as fab
 from fabrication.bodies import structure_bodies
 from fabrication.export.interchange.model import lamella_model
+from fabrication.materials import MATERIALS
 
 
 def test_every_strip_and_connector_is_an_item(slotted, model):
     jointed, parts = slotted
     connectors = sum(len(kind.bodies) for kind in jointed.connectors)
-    assert len(model.items) == len(parts) + connectors
+    bolts = sum(item.layer == "bolts" for item in model.items)
+    assert bolts > 0
+    assert len(model.items) == len(parts) + connectors - bolts  # each in one piece with its head
     assert [item.mark for item in model.items[: len(parts)]] == [part.mark for part in parts]
     assert len(model.nodes) == len(jointed.design.nodes)
 
@@ -56,13 +59,13 @@ def test_segments_are_copies_by_their_poses(model):
     segments = fab.Segments(4, centre=(500.0, -200.0))
     whole = model.repeated(segments.poses)
     assert len(whole.items) == 4 * len(model.items)
-    assert len({item.mark for item in whole.items}) == len(whole.items)
+    assert len({item.name for item in whole.items}) == len(whole.items)
     for number in range(4):
         item, copy = model.items[0], whole.items[number * len(model.items)]
-        assert copy.mark == f"segment-{number + 1} {item.mark}"
+        assert (copy.mark, copy.name) == (item.mark, f"segment-{number + 1} {item.mark}")
         assert copy.points == pytest.approx(segments.placed(item.points, number), abs=1e-9)
         assert copy.axis == pytest.approx(segments.placed(item.axis, number), abs=1e-9)
-        assert copy.numbers == item.numbers
+        assert copy.numbers == {**item.numbers, "quantity": 1}  # each stands for itself
     assert whole.nodes[-1][1] == pytest.approx(
         segments.placed(model.nodes[-1][1][None], 3)[0], abs=1e-9
     )
@@ -71,3 +74,26 @@ def test_segments_are_copies_by_their_poses(model):
 def test_an_assembly_of_no_parts_is_refused(slotted):
     with pytest.raises(ValueError, match="shorter"):
         lamella_model("shell", slotted[0], slotted[1][:-1])
+
+
+def test_bodies_say_their_size_and_what_they_are_of(slotted, model, panels, tower):
+    by_layer = model.layers
+    washer = by_layer["star washers"][0].numbers
+    assert (washer["thickness_mm"], washer["material"]) == (4.0, "S235")
+    bolt = by_layer["bolts"][0].numbers
+    assert bolt["diameter_mm"] == 8.0
+    assert bolt["length_mm"] % 5.0 == 0.0
+    masses = {panel.mark: panel.mass for panel in (*tower.panels, *tower.plates)}
+    for item in panels.items:
+        if item.mark in masses:
+            assert item.numbers["mass_kg"] == pytest.approx(masses[item.mark], abs=1e-3)
+
+
+def test_meshes_have_the_volume_that_masses_are_of(slotted, model, panels, tower):
+    densities = {m.name: m.density for m in MATERIALS.values()}
+    weighed = [item for item in (*model.items, *panels.items) if "mass_kg" in item.numbers]
+    assert len(weighed) > len(slotted[1])
+    for item in weighed:
+        volume = trimesh.Trimesh(item.points, item.triangles, process=False).volume
+        mass = volume * densities[item.numbers["material"]] * 1e-9
+        assert mass == pytest.approx(item.numbers["mass_kg"], rel=2e-3, abs=1e-5)

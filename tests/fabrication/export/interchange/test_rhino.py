@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import rhino3dm
 
+import fabrication as fab
 from fabrication.errors import OutputError
 from fabrication.export.interchange.rhino import write_3dm
 
@@ -37,7 +38,8 @@ def test_axes_are_as_long_as_the_lists_say(model, tmp_path):
     write_3dm(tmp_path / "a.3dm", model)
     found = objects(tmp_path / "a.3dm", rhino3dm.Curve)
     assert len(found) == sum(item.axis is not None for item in model.items)
-    lengths = {item.mark: item.numbers["length_mm"] for item in model.items if item.numbers}
+    strips = [item for item in model.items if item.axis is not None]
+    lengths = {item.mark: item.numbers["length_mm"] for item in strips}
     for one, layer in found:
         curve = one.Geometry
         u = np.linspace(curve.Domain.T0, curve.Domain.T1, 500)
@@ -55,6 +57,15 @@ def test_numbers_are_user_text(model, tmp_path):
     assert one.Attributes.GetUserString("mark") == strip.mark
     assert float(one.Attributes.GetUserString("length_mm")) == strip.numbers["length_mm"]
     assert one.Attributes.GetUserString("material") == "stainless"
+
+
+def test_copies_in_segments_keep_their_mark(model, tmp_path):
+    write_3dm(tmp_path / "a.3dm", model.repeated(fab.Segments(2).poses))
+    found = [one.Attributes for one, _ in objects(tmp_path / "a.3dm", rhino3dm.Mesh)]
+    told = {(one.Name, one.GetUserString("mark"), one.GetUserString("segment")) for one in found}
+    for number in (1, 2):
+        for item in model.items:
+            assert (f"segment-{number} {item.mark}", item.mark, f"segment-{number}") in told
 
 
 def test_nodes_are_named_points(model, tmp_path):
