@@ -32,7 +32,7 @@ function software() {
 
 // A layer, and its objects once they are asked for: what nobody looks at is not made.
 class Entry {
-  constructor(THREE, layer, shown) { Object.assign(this, { THREE, layer, shown, own: null }); }
+  constructor(THREE, layer, shown) { Object.assign(this, { THREE, layer, shown, own: null, placed: false }); }
   get made() { return (this.own ??= made(this.THREE, this.layer)); }
 }
 
@@ -109,10 +109,11 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     pen.textAlign = "center";
     pen.textBaseline = "middle";
     const at = new THREE.Vector3();
-    for (const { layer, shown, made: own } of state.layers.values()) {
+    for (const entry of state.layers.values()) {
+      const { layer, shown } = entry;
       if (layer.kind !== "labels" || !visible(layer, shown)) continue;
       layer.texts.forEach((text, n) => {
-        at.fromArray(own.points, 3 * n).project(camera);
+        at.fromArray(entry.made.points, 3 * n).project(camera);
         if (at.z > 1) return;
         pen.fillStyle = layer.colours[n % layer.colours.length];
         pen.fillText(text, (0.5 + at.x / 2) * width, (0.5 - at.y / 2) * height);
@@ -134,9 +135,8 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   // ---- camera -------------------------------------------------------------------------------
 
   function everything() {
-    const all = [];
-    for (const { layer, made: own, shown } of state.layers.values()) if (visible(layer, shown) && layer.kind !== "labels") all.push(own.reach ?? own.points);
-    if (!all.length) for (const { made: own } of state.layers.values()) all.push(own.points);
+    const entries = [...state.layers.values()], seen = entries.filter(({ layer, shown }) => visible(layer, shown) && layer.kind !== "labels");
+    const all = (seen.length ? seen : entries).map(({ made: own }) => own.reach ?? own.points);
     return all.filter((points) => points.length);
   }
 
@@ -223,10 +223,11 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
 
   function seen() {
     for (const entry of state.layers.values()) {
-      const there = visible(entry.layer, entry.shown), fresh = there && !entry.own;
-      if (!there && !entry.own) continue;
+      const there = visible(entry.layer, entry.shown);
+      if (!there && !entry.placed) continue;
       for (const object of entry.made.objects) object.visible = there;
-      if (!fresh) continue;
+      if (entry.placed) continue;
+      entry.placed = true;
       for (const object of entry.made.objects) world.add(object);
       shaded(entry);
       faded(entry);
@@ -311,7 +312,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     if (kinds.includes("strips")) parts.push(slider("Flat to built", 0, 100, Math.round(100 * state.bend), (value) => bend(value / 100), "gv-bend"));
     const [moving] = motions();
     if (moving) {
-      parts.push(slider("Opening", 0, moving.layer.frames.length - 1, moving.made.number, open, "gv-open"));
+      parts.push(slider("Opening", 0, moving.layer.frames.length - 1, state.opened ?? moving.layer.begin, open, "gv-open"));
       if (state.opened !== null && !onlyMoves()) parts.push(button("As built", () => open(null)));
     }
     foot.replaceChildren(...parts);
@@ -327,12 +328,13 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
 
   // ---- motion -------------------------------------------------------------------------------
 
-  const motions = () => [...state.layers.values()].filter(({ layer }) => layer.kind === "positions");
+  const ofKind = (kind) => [...state.layers.values()].filter(({ layer }) => layer.kind === kind);
+  const motions = () => ofKind("positions");
   const onlyMoves = () => motions().length > 0 && motions().length === state.layers.size;
 
   // Rows on the ground for all strips, one beside the other.
   function laid() {
-    const strips = [...state.layers.values()].filter(({ layer }) => layer.kind === "strips");
+    const strips = ofKind("strips");
     let low = Infinity, count = 0;
     const middle = [Infinity, -Infinity, Infinity, -Infinity];
     for (const { made: own, layer } of strips) {
@@ -360,8 +362,8 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     if (!moved) return;
     state.under = null;
     lit("under", null);
-    if ([...state.layers.values()].some(({ layer, made: own }) => layer.kind === "strips" && !own.rows)) laid();
-    for (const { layer, made: own } of state.layers.values()) if (layer.kind === "strips") own.bend(share, own.rows);
+    if (ofKind("strips").some(({ made: own }) => !own.rows)) laid();
+    for (const { made: own } of ofKind("strips")) own.bend(share, own.rows);
     if (state.picked) lit("picked", state.picked);
     seen();
   }

@@ -3,8 +3,11 @@
 import json
 import socket
 import tomllib
+from io import BytesIO
 
+import numpy as np
 import pytest
+from PIL import Image
 
 pytestmark = pytest.mark.xdist_group("browser")
 
@@ -48,6 +51,13 @@ def turn(page, key, presses):
     ready(page)
 
 
+def ink(page):
+    """How much darker than white the 3D view is, in pixels of full black."""
+    page.wait_for_timeout(600)
+    picture = Image.open(BytesIO(page.locator(".gv-stage").screenshot())).convert("L")
+    return int((255 - np.asarray(picture, dtype=int)).sum() / 255)
+
+
 @pytest.fixture
 def studio(path, start_studio):
     return start_studio(path)
@@ -83,6 +93,14 @@ def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
     page.get_by_role("button", name="Distance to surface").click()
     assert page.locator(".gv-high").inner_text().endswith(" mm")
     assert page.get_by_label("Control mesh").is_checked()
+    coloured = ink(page)
+    page.get_by_label("Control mesh").uncheck()
+    assert abs(ink(page) - coloured) > 2000
+    for name in ("Net D1", "Diagonal mesh D2", "Checkerboard", "Node axes"):
+        before = ink(page)
+        page.get_by_label(name).check()
+        assert abs(ink(page) - before) > 100, name
+        page.get_by_label(name).uncheck()
     page.get_by_role("button", name="Utilisation").click()
     assert "100 %" in page.locator(".gv-high").inner_text()
 

@@ -1,11 +1,16 @@
 """The 3D view of a report in a browser: what is shown against what was designed."""
 
+from io import BytesIO
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from PIL import Image
 
 import fabrication as fab
 import gridshell as gs
 from fabrication.export.report import write_report
+from fabrication.motion import motion
 from fabrication.parts import parts_of
 from fabrication.strength import bay_stress
 
@@ -57,6 +62,67 @@ def test_every_layer_can_be_switched(page):
     assert not page.evaluate(shown)
     page.get_by_label("Family A").check()
     assert page.evaluate(shown)
+
+
+def stage(page):
+    """The frame of the view as it is on the screen."""
+    page.wait_for_timeout(700)
+    picture = Image.open(BytesIO(page.locator(".gv-stage").screenshot()))
+    return np.asarray(picture.convert("RGB")).astype(int)
+
+
+def changed(page, before):
+    """Pixels that are no longer as in the picture *before*, outside the list of layers."""
+    away = np.abs(stage(page) - before).max(axis=2) > 24
+    away[:260, :200] = False
+    return int(np.count_nonzero(away))
+
+
+def alone(page, name):
+    """Pixels that a layer draws when no other is shown; all are shown again afterwards."""
+    boxes = page.locator(".gv-layer input")
+    was = [boxes.nth(k).is_checked() for k in range(boxes.count())]
+    for k in range(boxes.count()):
+        boxes.nth(k).set_checked(False)
+    empty = stage(page)
+    page.get_by_label(name, exact=True).check()
+    drawn = changed(page, empty)
+    for k, checked in enumerate(was):
+        boxes.nth(k).set_checked(checked)
+    return drawn
+
+
+def test_every_layer_draws_something_when_it_is_asked_for(page):
+    for name in page.locator(".gv-layer").all_inner_texts():
+        assert alone(page, name) > 50, name
+
+
+def test_a_net_that_opens_is_seen_in_every_position(chromium, tmp_path):
+    umbrella = gs.Umbrella(10, 1000.0, (600.0,) * 4)
+    profile = fab.Profile(50.0, 4.0, fab.GRP)
+    found = motion(umbrella.position(0.4), profile, count=5, limits=(0.35, 2.79))
+    control = gs.control_patch(gs.Catenoid(1000.0), gs.BisectingPatch((-0.8, 0.8), 24))
+    net, _ = gs.diagonal_meshes(control)
+    jointed = fab.SlotJoint().build(fab.structure(net, fab.Profile(100.0, 2.5, fab.STAINLESS)))
+    path = tmp_path / "report.html"
+    more = {"moving": (found, found.steps[2].opening)}
+    parts = parts_of(jointed)
+    write_report(path, name="Umbrella", report={}, jointed=jointed, parts=parts, **more)
+    page = chromium.new_page(viewport={"width": 1280, "height": 1000})
+    page.goto(path.as_uri())
+    page.wait_for_selector(".gv-open input")
+    built = stage(page)
+    blank = np.full_like(built, 255)
+    seen = []
+    for number in (0, 2, 4):
+        page.evaluate("(number) => view.open(number)", number)
+        assert changed(page, blank) > 1000
+        assert changed(page, built) > 20_000
+        seen.append(stage(page))
+    assert all(np.abs(a - b).max() > 24 for a, b in pairwise(seen))
+    page.get_by_role("button", name="As built").click()
+    assert changed(page, built) < 5000  # edges are smoothed when nothing moves
+    page.close()
 
 
 def test_everything_is_in_the_frame_and_fills_it(page):
