@@ -83,6 +83,8 @@ def _density(project: Project) -> Iterator[Knob]:
         case ConjugatePatchSection(panels=counts):
             for n, letter in enumerate("uv"):
                 yield _count(f"patch.panels.{n}", f"Panels along {letter}", counts[n])
+        case BisectingPatchSection(cells=count, u=None):
+            yield _count("patch.cells", "Control quads around", count, step=2)
         case BisectingPatchSection(cells=count) | SingularPatchSection(cells=count):
             yield _count("patch.cells", "Control quads each way", count)
     remesh = project.remesh
@@ -102,9 +104,10 @@ def _density(project: Project) -> Iterator[Knob]:
         )
 
 
-def _count(key: str, label: str, count: int) -> Knob:
-    low, high = min(3, count), max(40, 2 * count)
-    return Knob(key, label, "Net", "", count, low, high, 1.0, whole=True)
+def _count(key: str, label: str, count: int, *, step: int = 1) -> Knob:
+    """A number; of a ring, whose quads are *step* by *step*, from an even one on."""
+    low, high = min(4 if step == 2 else 3, count), max(40, 2 * count)
+    return Knob(key, label, "Net", "", count, low, high, float(step), whole=True)
 
 
 def _built(project: Project) -> Iterator[Knob]:

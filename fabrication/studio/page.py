@@ -56,7 +56,9 @@ class Page:
             with ui.element("div").classes("gs-middle"):
                 self._view = ShellView("/flat", self._show_all)
             with ui.element("div").classes("gs-right"):
-                self._findings()
+                self._found = ui.element("div")
+                with self._found:
+                    self._findings()
         self._status()
         client = ui.context.client
         client.on_delete(session.listen(partial(self._heard, client)))
@@ -98,8 +100,9 @@ class Page:
             with ui.element("div").classes("gs-banner gs-error").props("data-mark=trouble"):
                 ui.label(session.trouble)
         if session.note:
-            with ui.element("div").classes("gs-banner gs-note").props("data-mark=note"):
-                ui.label(session.note)
+            style = "gs-note" if session.note.good else "gs-disk"
+            with ui.element("div").classes(f"gs-banner {style}").props("data-mark=note"):
+                ui.label(session.note.text)
         if session.differs_on_disk:
             with ui.element("div").classes("gs-banner gs-disk").props("data-mark=disk"):
                 ui.label(f"{session.saved.path.name} {self._fate()} by another program.")
@@ -136,9 +139,13 @@ class Page:
 
         def typed() -> None:
             value = field.value
-            if value is None or value == self.session.present.value(knob.key):
+            if value is None:
+                field.set_value(knob.chosen(slider.value))
                 return
             value = round(value) if knob.whole else float(value)
+            field.set_value(value)
+            if value == self.session.present.value(knob.key):
+                return
             self.session.change(knob.key, value, done=True)
             place = knob.place(value)
             if place is not None:
@@ -202,6 +209,10 @@ class Page:
         busy = self.session.busy
         ready = "Up to date" if self.session.up_to_date else ""
         self._doing.set_text(ready if busy is None else f"{busy.text} …")
+        if self.session.up_to_date:
+            self._found.classes(remove="gs-old")
+        else:
+            self._found.classes("gs-old")
         self._bar.set_visibility(busy is not None and busy.share is not None)
         if busy is not None and busy.share is not None:
             self._bar.set_value(busy.share)
@@ -276,12 +287,14 @@ class Page:
         with ui.dialog() as dialog, ui.card():
             ui.label(title).classes("gs-name")
             ui.label(f"In {self.session.folder}")
-            name = ui.input("Name", value=default).style("min-width: 320px")
+            name = ui.input("Name", value=default).style("min-width: 320px").props("autofocus")
+            name.on("keydown.enter", lambda: dialog.submit(name.value))
             with ui.row():
                 ui.button(title, on_click=lambda: dialog.submit(name.value)).props(
                     "unelevated no-caps color=dark"
                 )
                 ui.button("Cancel", on_click=lambda: dialog.submit(None)).props("flat no-caps")
         found: str | None = await dialog
-        dialog.delete()
+        if not dialog.is_deleted:  # as when the browser went away
+            dialog.delete()
         return found

@@ -23,6 +23,7 @@ from fabrication.studio.design import Built, NetDesign, Residual, Starts, build,
 from fabrication.studio.disk import Saved, outside, read, write, write_copy
 from fabrication.studio.knobs import Knob, knobs
 from fabrication.studio.versions import History, Version
+from fabrication.words import plural
 from gridshell import GridshellError, SettingError
 
 _TELL = 0.25
@@ -55,6 +56,14 @@ class Busy:
     share: float | None = None
 
 
+@dataclass(frozen=True)
+class Note:
+    """What was done; not *good* where it needs a second look."""
+
+    text: str
+    good: bool = True
+
+
 class Session:
     """A project that is looked at and changed.
 
@@ -76,9 +85,10 @@ class Session:
         self.built: Built | None = None
         self.busy: Busy | None = None
         self.trouble = ""
-        self.note = ""
+        self.note: Note | None = None
         self.residuals: list[Residual] = []
         self.differs_on_disk = False
+        self._unread: str | None = None
         self._shown = self.history.present
         self._wanted: Version | None = None
         self._asked: Version | None = None
@@ -134,11 +144,17 @@ class Session:
     # ---- changes ----------------------------------------------------------------------------
 
     def change(self, key: str, value: Any, *, done: bool) -> None:
-        """Set *key*; while a slider is not *done*, nothing is remembered for undo."""
+        """Set *key*; while a slider is not *done*, nothing is remembered for undo.
+
+        A value that cannot be is told when the hand lets go of it: what is shown then stays.
+        """
         try:
             version = self._shown.with_value(key, value, self.saved.path)
         except GridshellError as error:
-            self._fail(error)
+            if done:
+                self._remember(self._shown)
+                self._tell(Change.PROJECT)
+                self._fail(error)
             return
         if dict(version.document) == dict(self._shown.document):
             version = self._shown  # its net is there, or on its way
@@ -165,14 +181,14 @@ class Session:
 
     def _show(self, version: Version) -> None:
         asked, self._shown = self._shown, version
-        self.trouble, self.note = "", ""
+        self.trouble, self.note = "", None
         if self._asked is not version or asked is not version:
             self._asked = self._wanted = version
             self._awake.set()
         self._tell(Change.STATUS)
 
     def _fail(self, error: GridshellError) -> None:
-        self.trouble = str(error)
+        self.trouble, self.note = str(error), None
         self._tell(Change.STATUS)
 
     def _version(self, saved: Saved) -> Version:
@@ -194,6 +210,7 @@ class Session:
             saved = read(self.saved.path)
             version = self._version(saved)
         except GridshellError as error:
+            self._unread = self.saved.now()
             self._fail(error)
             return
         self.saved, self.differs_on_disk = saved, False
@@ -205,7 +222,7 @@ class Session:
     def keep(self) -> None:
         """Go on with what is shown, and save over what another program wrote."""
         self.saved = replace(self.saved, seen=self.saved.now())
-        self.differs_on_disk = False
+        self.differs_on_disk, self.trouble = False, ""
         self._tell(Change.DISK)
 
     def save(self, name: str | None = None) -> None:
@@ -214,10 +231,10 @@ class Session:
         try:
             if name is None:
                 self.saved = write(self.saved, document)
-                self.note = f"Saved {self.saved.path.name}."
+                self.note = Note(f"Saved {self.saved.path.name}.")
             else:
-                made = write_copy(self.saved, name, document)
-                self.note = f"Saved a copy as {made.path.name}."
+                made = write_copy(self.saved, _with_ending(name), document)
+                self.note = Note(f"Saved a copy as {made.path.name}.")
         except GridshellError as error:
             self._fail(error)
             return
@@ -270,8 +287,8 @@ class Session:
             self._packing, self.busy = False, None
             self._tell(Change.STATUS)
         errors = sum(finding["severity"] == "error" for finding in report["findings"])
-        more = f"; {errors} findings of severity error, see report.html" if errors else ""
-        self.note = f"The package is in {name}/{more}."
+        more = f"; {plural(errors, 'finding')} of severity error, see report.html" if errors else ""
+        self.note = Note(f"The package is in {name}/{more}.", good=not errors)
         self._tell(Change.STATUS)
         return True
 
@@ -305,7 +322,11 @@ class Session:
     async def _watch(self) -> None:
         while True:
             await asyncio.sleep(_LOOK)
-            differs = await asyncio.to_thread(lambda: self.saved.changed)
+            now = await asyncio.to_thread(self.saved.now)
+            differs = now != self.saved.seen
+            if self._unread is not None and now != self._unread:
+                self._unread, self.trouble = None, ""  # what could not be read is mended, or gone
+                self._tell(Change.DISK)
             if differs != self.differs_on_disk:
                 self.differs_on_disk = differs
                 self._tell(Change.DISK)
@@ -376,3 +397,7 @@ class Session:
     def _doing(self, text: str) -> None:
         self.busy = Busy(text)
         self._tell(Change.STATUS)
+
+
+def _with_ending(name: str) -> str:
+    return f"{name}.toml" if name and not Path(name).suffix else name

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from fabrication.project import project_of
@@ -29,6 +30,17 @@ def test_every_place_of_every_slider_is_a_project(version, path):
         for place in (knob.low, knob.value, knob.high):
             turned = version.with_value(knob.key, knob.chosen(place), path)
             assert turned.value(knob.key) == pytest.approx(knob.chosen(place))
+
+
+def test_every_step_around_a_ring_is_a_ring(version, path):
+    document = dict(version.document)
+    document["surface"] = {"kind": "catenoid", "radius": 2000.0}
+    document["patch"] = {"layout": "bisecting", "v": [-0.8, 0.8], "cells": 24}
+    ring = Version.of(document, path)
+    cells = by_key(ring.project)["patch.cells"]
+    assert cells.label == "Control quads around"
+    for place in np.arange(cells.low, cells.high + 1.0, cells.step):
+        assert ring.with_value(cells.key, cells.chosen(place), path).value(cells.key) == place
 
 
 def test_the_value_of_the_project_is_a_place_of_its_slider(version):

@@ -115,7 +115,7 @@ def test_a_walk_from_the_project_to_the_package(chromium, studio, path):
     page.get_by_role("dialog").get_by_role("button", name="Write the package").click()
     page.get_by_text("The package is in pavilion-package/.").wait_for()
     page.get_by_role("button", name="Save as project").click()
-    page.get_by_role("dialog").get_by_role("button", name="Save as project").click()
+    page.get_by_role("dialog").get_by_label("Name").press("Enter")
     page.get_by_text("Saved a copy as pavilion-2.toml.").wait_for()
     saved = tomllib.loads((path.parent / "pavilion-2.toml").read_text())
     assert saved["net"]["angle"] == 65.0
@@ -158,6 +158,17 @@ def test_a_number_can_be_typed_and_a_wrong_one_is_explained(chromium, studio):
     told.wait_for()
     assert "net.angle" in told.inner_text()
     assert figure(page, "node_angle_deg") == "62.35 to 62.35°"
+    assert typed(page, "net.angle").input_value() == "62.35"
+    typed(page, "net.angle").fill("")
+    typed(page, "net.angle").press("Enter")
+    page.wait_for_timeout(300)
+    assert typed(page, "net.angle").input_value() == "62.35"
+    typed(page, "patch.lamellas.0").fill("7.6")
+    typed(page, "patch.lamellas.0").press("Enter")
+    page.wait_for_timeout(300)
+    ready(page)
+    assert typed(page, "patch.lamellas.0").input_value() == "8"
+    assert figure(page, "lamellas") == "13"
     page.close()
 
 

@@ -105,6 +105,67 @@ def test_a_value_out_of_its_limits_changes_nothing(path):
     asyncio.run(turn())
 
 
+def test_a_slider_that_is_let_go_at_a_refused_place_stays_at_the_last_good_one(path):
+    async def turn():
+        async with working(path) as session:
+            session.change("net.angle", 65.0, done=False)
+            session.change("net.angle", 190.0, done=False)
+            assert session.trouble == ""  # the hand may go on
+            session.change("net.angle", 190.0, done=True)
+            assert "net.angle" in session.trouble
+            assert session.present is session.history.present
+            assert session.present.value("net.angle") == 65.0
+            session.save()
+            assert read_project(path).net.angle == 65.0
+            await until(lambda: session.up_to_date)
+
+    asyncio.run(turn())
+
+
+def test_a_package_with_errors_is_no_good_news(path, text):
+    path.write_text(text.replace("thickness = 2.0", "thickness = 9.0"))
+
+    async def turn():
+        async with working(path) as session:
+            assert await session.write_package("package")
+            assert not session.note.good
+            assert "of severity error" in session.note.text
+
+    asyncio.run(turn())
+
+
+def test_what_was_wrong_with_a_file_is_forgotten_when_it_is_mended(path, monkeypatch, text):
+    monkeypatch.setattr(module, "_LOOK", 0.05)
+
+    async def turn():
+        async with working(path) as session:
+            path.write_text("name = ")
+            await until(lambda: session.differs_on_disk)
+            session.load()
+            assert "not TOML" in session.trouble
+            path.write_text(text)
+            await until(lambda: not session.differs_on_disk)
+            assert session.trouble == ""
+
+    asyncio.run(turn())
+
+
+def test_keeping_mine_and_good_news_take_old_troubles_away(path, text):
+    async def turn():
+        async with working(path) as session:
+            path.write_text(text.replace("70.0", "71.0"))
+            session.save()
+            assert "another program" in session.trouble
+            session.keep()
+            assert session.trouble == ""
+            session.save("other")
+            assert session.note.text == "Saved a copy as other.toml."
+            session.change("net.angle", 500.0, done=True)
+            assert session.note is None
+
+    asyncio.run(turn())
+
+
 def test_a_fault_of_the_program_does_not_end_the_session(path, monkeypatch):
     async def turn():
         async with working(path) as session:
@@ -222,7 +283,8 @@ def test_the_package_is_what_run_writes(path, tmp_path, text):
         async with working(path) as session:
             session.change("net.angle", 62.0, done=True)
             assert await session.write_package("package")
-            assert "package/" in session.note
+            assert "package/" in session.note.text
+            assert session.note.good
             await until(lambda: session.up_to_date)
 
     asyncio.run(turn())
