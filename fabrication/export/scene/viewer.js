@@ -72,11 +72,12 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   const controls = new OrbitControls(camera, renderer.domElement);
   controls.zoomToCursor = true;
   controls.addEventListener("change", draw);
+  controls.addEventListener("start", () => { touched = true; });
   const mark = new THREE.MeshBasicMaterial({ color: ACCENT, side: THREE.DoubleSide });
   const picker = new THREE.Raycaster();
 
   const state = { layers: new Map(), maps: [], scale: [], table: null, map: null, bend: 1, opened: null, pending: false, picked: null, under: null, home, frames: 0, rows: [], news: 0 };
-  let waiting = false, dragging = false;
+  let waiting = false, dragging = false, touched = false, direction = home;  // whether one looks from where one went oneself
 
   // ---- drawing ------------------------------------------------------------------------------
 
@@ -128,6 +129,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     [ink.width, ink.height] = [width, height].map((size) => size * ratio);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
+    fit();
     draw();
   }
   new ResizeObserver(resized).observe(stage);
@@ -140,7 +142,8 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     return all.filter((points) => points.length);
   }
 
-  function frame(direction = state.home) {
+  function frame(towards = direction) {
+    [direction, touched] = [towards, false];
     const back = new THREE.Vector3(...direction).normalize();
     const right = new THREE.Vector3().crossVectors(camera.up, back).normalize(), up = new THREE.Vector3().crossVectors(back, right);
     const sets = everything(), axes = [right, up, back].map((axis) => axis.toArray());
@@ -173,6 +176,21 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     draw();
   }
 
+  // Where nobody has turned or moved the view, what no longer fits is framed anew.
+  function fit() {
+    if (touched) return;
+    const at = new THREE.Vector3();
+    let far = 0;
+    camera.updateMatrixWorld();
+    for (const points of everything()) {
+      for (let n = 0; n < points.length; n += 3) {
+        at.fromArray(points, n).project(camera);
+        far = Math.max(far, Math.abs(at.x), Math.abs(at.y));
+      }
+    }
+    if (far > 1.001 || far < 0.6) frame();
+  }
+
   // ---- layers -------------------------------------------------------------------------------
 
   const read = (maps) => maps.map((map) => ({ ...map, values: unpacked(map.values) }));
@@ -190,6 +208,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     else state.maps = [...read(maps), ...state.maps.filter(({ on }) => on !== "quads")];
     settle();
     if (first) frame();
+    else fit();
     renderer.render(world, camera);
     state.news = performance.now();
   }
@@ -274,7 +293,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
       maps.append(node);
     }
     const views = tag("div", "gv-views");
-    for (const [name, direction] of Object.entries(VIEWS)) views.append(button(name, () => frame(direction || state.home)));
+    for (const [name, towards] of Object.entries(VIEWS)) views.append(button(name, () => frame(towards || state.home)));
     bar.replaceChildren(...(state.maps.length ? [maps] : []), views);
     footed();
   }
@@ -366,6 +385,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     for (const { made: own } of ofKind("strips")) own.bend(share, own.rows);
     if (state.picked) lit("picked", state.picked);
     seen();
+    fit();
   }
 
   function open(number) {
