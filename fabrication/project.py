@@ -124,7 +124,7 @@ def project_text(project: Project, *, explained: bool = False) -> str:
 
     Parameters
     ----------
-    explained : with what every key means behind it.
+    explained : with what every key means behind it, and the sections it could have besides.
     """
     lines = [f"name = {_toml(project.name)}"]
     for name in type(project).model_fields:
@@ -132,6 +132,8 @@ def project_text(project: Project, *, explained: bool = False) -> str:
         if isinstance(section, Section):
             about = f"  # {key_help('Project', name)}" if explained else ""
             lines += ["", f"[{name}]{about}", *_settings(section, explained)]
+    if explained:
+        lines += ["", "# Sections that it could have, too:", *_possible(project)]
     return "\n".join(lines) + "\n"
 
 
@@ -144,6 +146,46 @@ def _settings(section: Section, explained: bool) -> Iterator[str]:
             yield f"# {name} = ...  # unset: {field.description}" + (f"; {about}" if about else "")
         else:
             yield f"{name} = {_toml(value)}" + (f"  # {about}" if about else "")
+
+
+_OF_STRIPS = ("bars", "shop", "flat", "papers", "segments", "export", "facade")
+_OF_PANELS = ("supports", "connector", "beams", "moulds", "panel_sheet", "export")
+_OF_UMBRELLAS = ("shop", "papers", "motion", "export")
+
+
+def _possible(project: Project) -> Iterator[str]:
+    """Sections that *project* does not have and its kind may have, with their keys, as comments."""
+    possible = _OF_UMBRELLAS if project.umbrella is not None else _OF_STRIPS
+    for name in _OF_PANELS if project.panels is not None else possible:
+        if getattr(project, name) is not None:
+            continue
+        yield f"# [{name}]  # {key_help('Project', name)}"
+        kinds = _kinds_of(Project.model_fields[name].annotation)
+        for kind in kinds if len(kinds) == 1 else ():
+            yield from _blank(kind)
+        if len(kinds) > 1:
+            tags = [get_args(kind.model_fields["kind"].annotation)[0] for kind in kinds]
+            yield f"#   kind = ...  # {', '.join(tags)}; each has keys of its own"
+
+
+def _kinds_of(annotation: Any) -> list[type[Section]]:
+    """All sections that an annotation allows."""
+    if isinstance(annotation, type):
+        return [annotation] if issubclass(annotation, Section) else []
+    return [kind for part in get_args(annotation) for kind in _kinds_of(part)]
+
+
+def _blank(kind: type[Section]) -> Iterator[str]:
+    """The keys of a section: needed ones, and what the others are when they are left out."""
+    named = next(name for name, section in _sections().items() if section is kind)
+    for name, field in kind.model_fields.items():
+        if field.is_required() or field.default is None:
+            said = "..."
+        else:
+            said = _toml(field.get_default(call_default_factory=True))
+        need = "needed; " if field.is_required() else ""
+        need = f"unset: {field.description}; " if field.default is None else need
+        yield f"#   {name} = {said}  # {need}{key_help(named, name)}"
 
 
 def _toml(value: Any) -> str:
@@ -187,13 +229,18 @@ _LIMITS: dict[str, Callable[[dict[str, Any]], str]] = {
 """What is allowed instead, by pydantic's name for the mistake."""
 
 
+_TOLD = 4
+"""Of further mistakes, so many are named."""
+
+
 def _explained(path: Path, error: ValidationError) -> ProjectError:
     """The first thing that is wrong, unknown keys before all others, as one sentence."""
     problems = error.errors(include_url=False)
     first = min(problems, key=lambda problem: problem["type"] != "extra_forbidden")
     key, location = _key(first["loc"]), first["loc"]
-    others = len({_key(problem["loc"]) for problem in problems}) - 1
-    more = f" ({others} more after this one)" if others else ""
+    others = [k for k in dict.fromkeys(_key(problem["loc"]) for problem in problems) if k != key]
+    told = ", ".join(others[:_TOLD]) + (" ..." if len(others) > _TOLD else "")
+    more = f" (to mend, too: {told})" if others else ""
     where = f"{path}, {key}" if key else str(path)
     if first["type"] == "extra_forbidden":
         return ProjectError(f"Unknown key{more}", where=where, advice=_nearest_key(location))

@@ -111,7 +111,9 @@ def test_check_lists_every_setting_with_its_value(command, write):
     code, out, err = command("check", write())
     assert (code, err) == (0, "")
     assert tomllib.loads(out)["net"]["steps"] == 30
-    lines = set(out.splitlines())
+    own, more = out.split("# Sections that it could have, too:")
+    assert "# [bars]" in more
+    lines = set(own.splitlines())
     bare = {line.split("  # ")[0] for line in lines}
     assert {'name = "small"', "[net]", "[joint]", "clearance = 0.3", "p = [-0.2, 0.2]"} <= bare
     assert all("  # " in line for line in lines if " = " in line and not line.startswith("name"))

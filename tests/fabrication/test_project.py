@@ -1,8 +1,10 @@
 import json
 import re
+import tomllib
 from copy import deepcopy
 from datetime import date
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from hypothesis import given, settings
@@ -10,6 +12,8 @@ from hypothesis import strategies as st
 
 import fabrication as fab
 from fabrication.errors import ProjectError
+from fabrication.project import project_text, read_project
+from fabrication.sections import Project
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -472,16 +476,50 @@ def test_a_wrong_remesh_section_is_named(refused, beside, key, value, words):
     assert words in str(refused({**IMPORTED, "remesh": {**REMESH, key: value}}))
 
 
+# ---- what it could have, too ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("example", "sections"),
+    [
+        ("01_enneper_60", {"bars", "shop", "flat", "papers", "segments", "export", "facade"}),
+        ("12_glazed_enneper", {"bars", "shop", "flat", "papers", "segments", "export"}),
+        ("09_tower_panels", {"beams", "moulds", "export"}),
+        ("18_umbrella", {"shop", "papers", "export"}),
+    ],
+)
+def test_sections_it_could_have_are_told_with_all_their_keys(example, sections):
+    known = read_project(EXAMPLES / f"{example}.toml")
+    text = project_text(known, explained=True)
+    own, more = text.split("# Sections that it could have, too:\n")
+    assert set(re.findall(r"^# \[(\w+)\]", more, re.MULTILINE)) == sections
+    for part in re.split(r"^# \[", more, flags=re.MULTILINE)[1:]:
+        name = part.split("]")[0]
+        (kind,) = [
+            k for k in get_args(Project.model_fields[name].annotation) if k is not type(None)
+        ]
+        assert re.findall(r"^#   (\w+) = ", part, re.MULTILINE) == list(kind.model_fields)
+        assert all(line.count("  # ") == 1 for line in part.splitlines()[1:])
+    assert tomllib.loads(text) == tomllib.loads(own)
+    assert "could have" not in project_text(known)
+
+
 # ---- several mistakes -----------------------------------------------------------------------
 
 
 def test_one_mistake_is_one_mistake(refused):
-    assert "more after this one" not in str(refused({"profile.material": "steel"}))
+    assert "to mend, too" not in str(refused({"profile.material": "steel"}))
 
 
-def test_other_mistakes_are_counted(refused):
+def test_other_mistakes_are_named(refused):
     error = refused({"profile.thickness": -1.0, "sheet.length": -1.0, "sheet.width": -1.0})
-    assert "(2 more after this one)" in error.what
+    assert "(to mend, too: sheet.length, sheet.width)" in error.what
+
+
+def test_of_many_mistakes_some_are_named(refused):
+    wrong = {f"profile.{letter}": 1.0 for letter in "abcdefg"}
+    told = "profile.b, profile.c, profile.d, profile.e ..."
+    assert refused(wrong).what == f"Unknown key (to mend, too: {told})"
 
 
 # ---- anything at all ------------------------------------------------------------------------
