@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
+from math import degrees
 from pathlib import Path
 
 import gridshell as gs
@@ -146,11 +147,13 @@ class LamellaSystem(LamellaDesign):
     def _figures(self, fitted: Fit) -> Report:
         jointed, parts = self.jointed, self.parts
         density = jointed.design.profile.material.density
+        angles = [degrees(node.angle) for node in jointed.design.nodes if node.angle is not None]
         return {
             "lamellas": len(jointed.design.lamellas),
             "strips": len(jointed.strips.lamellas),
             "nodes": len(jointed.design.nodes),
             "joints": fitted.nodes,
+            "joint_angle_deg": {"min": min(angles), "max": max(angles)} if angles else None,
             "connectors": {kind.name: len(kind.bodies) for kind in jointed.connectors},
             "total_length_m": round(sum(p.quantity * p.length for p in parts) / 1000.0, 3),
             "mass_kg": float(f"{sum(p.quantity * p.volume for p in parts) * density * 1e-9:.6g}"),

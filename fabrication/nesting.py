@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from fabrication.errors import StockError
-from fabrication.parts import Label
+from fabrication.parts import FlatPart, Label
 from fabrication.stock import Sheet
 from gridshell.arrays import Floats
 
@@ -160,7 +160,11 @@ def _check_fit(part: SheetPart, sheet: Sheet) -> None:
                 where=part.mark,
                 value=f"{size:.1f} mm",
                 limit=f"{room:.1f} mm between the sheet's margins",
-                advice="a longer sheet or coil, a smaller margin, or shorter parts"
-                if what == "long"
-                else "a wider sheet, or narrower parts",
+                advice=_longer(part) if what == "long" else "a wider sheet, or narrower parts",
             )
+
+
+def _longer(part: SheetPart) -> str:
+    """What helps where *part* is too long."""
+    pieces = ", or [bars] with a splice" if isinstance(part, FlatPart) else ""
+    return f"a longer sheet or coil, a smaller margin, shorter parts{pieces}"

@@ -198,7 +198,7 @@ def _require_room(mark: str, slots: Sequence[Slot], length: float) -> None:
                 where=f"{mark}, {' and '.join(beside)}",
                 value=f"{b - a:.2f} mm between them",
                 limit="> 0",
-                advice="fewer lamellas, a thinner strip, or a longer overhang",
+                advice="fewer lamellas, a thinner strip, a longer overhang; lengths are in mm",
             )
 
 

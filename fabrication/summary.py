@@ -39,7 +39,7 @@ def _strips(report: Report) -> list[str]:
         f"{plural(built['joints'], 'joint')}{', ' if count == 1 else '; all of them '}"
         f"{length(built['total_length_m'])}, {mass(built['mass_kg'])} on "
         f"{plural(built['sheets'], raw)}; "
-        f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees",
+        f"node angles {angle['min']:.2f} to {angle['max']:.2f} degrees{_at_joints(built)}",
         *_stock(report["stock"]),
         f"bent in, the material bears {100.0 * report['stress']['utilisation']['max']:.0f} % of "
         f"its strength at most, at {report['stress']['utilisation']['where']}",
@@ -54,6 +54,12 @@ def _strips(report: Report) -> list[str]:
             f"{plural(glass['profiles'], 'secondary profile')}, {length(glass['profile_length_m'])}"
         )
     return lines
+
+
+def _at_joints(built: Report) -> str:
+    """The angles of strips at their nodes, which differ from those of the net's quads."""
+    found = built.get("joint_angle_deg")
+    return f", {found['min']:.2f} to {found['max']:.2f} at the joints" if found else ""
 
 
 def _stock(stock: Report) -> list[str]:

@@ -386,6 +386,8 @@ def test_the_angle_that_is_asked_for_is_built(tmp_path):
     report = fab.run(project(net=net, surface=enneper), tmp_path)
     assert report["net"]["angle_error_deg"]["max"] < 1e-4
     assert report["net"]["node_angle_deg"] == pytest.approx({"min": 60.0, "max": 60.0}, abs=1e-4)
+    at_joints = report["structure"]["joint_angle_deg"]
+    assert 58.0 < at_joints["min"] < 60.0 < at_joints["max"] < 62.0
     assert report["net"]["surface_distance_mm"]["max"] > 100.0
     assert "off-surface" not in {finding["code"] for finding in report["findings"]}
 

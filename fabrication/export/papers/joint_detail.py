@@ -56,7 +56,7 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
         notes = _notes(jointed, parts, node, frame)
         levels = _levels(jointed, frame)
         half = _REACH * jointed.design.profile.width
-        scale = _scale(4.4 * half / area.width, 2.2 * half / (area.height - 14.0))
+        scale = _scale(4.9 * half / area.width, 2.2 * half / (area.height - 14.0))
 
         def draw(
             pen: Pen,
@@ -71,7 +71,7 @@ def joint_pages(jointed: Jointed, parts: Sequence[FlatPart], *, paper: str) -> I
             levels: Sequence[float] = levels,
         ) -> None:
             middle = page.y + page.height / 2.0 + 5.0
-            left, right = page.x + 0.26 * page.width, page.x + 0.68 * page.width
+            left, right = page.x + 0.24 * page.width, page.x + 0.71 * page.width
             for band in bands:
                 flat = frame.flat(band.points) / scale
                 up = frame.distance(band.points) / scale

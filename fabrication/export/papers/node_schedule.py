@@ -42,7 +42,7 @@ def _row(jointed: Jointed, node: Node, widths: dict[str, list[str]]) -> tuple[st
         *(f"{value:.1f}" for value in (node.position.round(1) + 0.0).tolist()),
         "-" if node.angle is None else f"{np.degrees(node.angle):.2f}",
         " ".join(strip.mark for strip, _ in crossings),
-        " ".join(_place(station - strip.start, strip.length) for strip, station in crossings),
+        " / ".join(_place(station - strip.start, strip.length) for strip, station in crossings),
         " / ".join(widths.get(node.name, ["-"])),
     )
 

@@ -35,6 +35,8 @@ def strip_figures(built: Found, longest: str, raw: str) -> Iterator[Figure]:
     """What is built of strips; *raw* is what they are cut from."""
     yield Figure("Lamellas", number(built.get("lamellas")), "", _counted(built, "strips", "strip"))
     yield Figure("Joints", number(built.get("joints")), "", _counted(built, "nodes", "node"))
+    if built.get("joint_angle_deg"):
+        yield _between("Angle at the joints", built["joint_angle_deg"], "°")
     yield Figure("Total length", fixed(built.get("total_length_m"), 1), "m", longest)
     sheets = _counted(built, "sheets", raw)
     yield Figure("Mass", number(built.get("mass_kg")), "kg", sheets)
