@@ -64,8 +64,8 @@ def residual_chart(residuals: Sequence[float], tolerance: float) -> str:
     dots = "".join(
         f'<circle cx="{a:.1f}" cy="{b:.1f}" r="2"/>' for a, b in zip(x, y[:-1], strict=True)
     )
-    goal = float(y[-1])
-    last = "" if len(residuals) == 0 else f"{residuals[-1]:.0e}"
+    goal = float(y[-1]) if len(residuals) else height - edge
+    told = f"{residuals[-1]:.0e} after {len(residuals)} steps" if residuals else "no step needed"
     return (
         f'<svg viewBox="0 0 {width:g} {height:g}" width="100%" role="img" '
         f'aria-label="Largest residual by step">'
@@ -74,5 +74,5 @@ def residual_chart(residuals: Sequence[float], tolerance: float) -> str:
         f'<polyline points="{line}" fill="none" stroke="#5c7894" stroke-width="1.5"/>'
         f'<g fill="#1c232d">{dots}</g>'
         f'<text x="{width - edge:g}" y="{edge + 6:g}" text-anchor="end" font-size="10" '
-        f'fill="#5a6472">{last} after {len(residuals)} steps; {tolerance:.0e} wanted</text></svg>'
+        f'fill="#5a6472">{told}; {tolerance:.0e} wanted</text></svg>'
     )

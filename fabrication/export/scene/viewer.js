@@ -468,6 +468,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
   async function pick(found) {
     const same = found && state.picked && found.id === state.picked.id && found.part === state.picked.part;
     state.picked = found;
+    if (!found) tip.hidden = true;
     lit("picked", found);
     for (const entry of ready()) faded(entry);
     if (!found) {
@@ -484,6 +485,7 @@ export function viewer({ THREE, OrbitControls }, root, { pattern = async () => n
     if (side.hidden) { side.hidden = false; resized(); }
     chosen(words.mark);
     draw();
+    if (state.layers.get(found.id).layer.kind === "dots") return;  // nodes have none
     const svg = await pattern(words.pattern || words.mark);
     if (svg && state.picked === found) {
       drawing.append(document.importNode(new DOMParser().parseFromString(svg, "image/svg+xml").documentElement, true));
