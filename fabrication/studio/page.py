@@ -23,7 +23,7 @@ from gridshell.arrays import Floats
 _CSS = (Path(__file__).parent / "studio.css").read_text(encoding="utf-8") + style()
 
 _LISTED = 200
-"""Findings that are listed; the report has all."""
+"""Findings of a kind that are listed; the report has all."""
 
 
 class _Slider(ui.slider):
@@ -179,10 +179,27 @@ class Page:
         found = () if built is None else built.findings
         ui.label(plural(len(found), "finding") if found else "No findings").classes("gs-group")
         grades = [Severity.ERROR, Severity.WARNING, Severity.INFO]
-        for finding in sorted(found, key=lambda f: grades.index(f.severity))[:_LISTED]:
-            self._finding(finding)
-        if len(found) > _LISTED:
-            ui.label(f"and {len(found) - _LISTED} more, in the report")
+        kinds: dict[tuple[Severity, str], list[Finding]] = defaultdict(list)
+        for finding in sorted(found, key=lambda f: grades.index(f.severity)):
+            kinds[finding.severity, finding.code].append(finding)
+        for same in kinds.values():
+            if len(same) == 1:
+                self._finding(same[0])
+            else:
+                self._alike(same)
+
+    def _alike(self, same: list[Finding]) -> None:
+        """Findings of a kind: the first in words, all places to unfold."""
+        first, places = same[0], plural(len(same), "place")
+        with ui.element("details").classes(f"gs-find {first.severity.value}"):
+            with ui.element("summary"):
+                with ui.element("b"):
+                    ui.label(f"{first.severity.value}: {first.code} at {places}")
+                ui.label(raised(first.message)).classes("gs-first")
+            for finding in same[:_LISTED]:
+                self._finding(finding)
+            if len(same) > _LISTED:
+                ui.label(f"and {len(same) - _LISTED} more, in the report")
 
     def _finding(self, finding: Finding) -> None:
         line = (

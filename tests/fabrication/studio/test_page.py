@@ -1,6 +1,7 @@
 """A click through the studio in a browser; what it shows against what report.json says."""
 
 import json
+import re
 import socket
 import tomllib
 from io import BytesIO
@@ -202,6 +203,23 @@ def test_a_solve_that_fails_says_so_on_the_page(chromium, start_studio, path):
     studio.visit(page)
     page.locator("[data-mark=trouble]").wait_for()
     assert "steps" in page.locator("[data-mark=trouble]").inner_text()
+    page.close()
+
+
+def test_findings_of_a_kind_unfold_to_their_places_and_these_show_the_part(
+    chromium, start_studio, path
+):
+    path.write_text(path.read_text().replace("thickness = 2.0", "thickness = 9.0"))
+    page = opened(chromium, start_studio(path))
+    kind = page.locator("details.gs-find").first
+    count = int(re.search(r"at (\d+) places", kind.locator("summary").inner_text())[1])
+    places = kind.locator("[data-mark=finding]")
+    assert places.count() == min(count, 200) > 1
+    assert not places.first.is_visible()
+    kind.locator("summary b").click()
+    places.nth(1).click()
+    mark = re.search(r"at ([AB]\d+)", places.nth(1).inner_text())[1]
+    page.locator(".gv-side strong", has_text=mark).wait_for()
     page.close()
 
 
