@@ -166,7 +166,7 @@ def write_remeshed(
     if pictures is None:
         write_whole(files)
         return
-    from fabrication.export.stages import write_stages
+    from fabrication.export.stage_page import write_stages
 
     with draft_folder(pictures) as draft:
         write_stages(draft, result.made, name=name)

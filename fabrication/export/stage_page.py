@@ -10,17 +10,42 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup
 
+import gridshell as gs
+from fabrication.errors import OutputError
 from fabrication.export.scene import layers as scene
 from fabrication.export.scene.packing import on_screen
 from fabrication.export.scene.page import as_json, scripts, style
 from fabrication.export.scene.whole import middle
-from fabrication.export.stages import Stage
+from fabrication.export.stages import Stage, drawn, stages, view_of
 from fabrication.words import fixed, number, plural
 from gridshell.arrays import Floats, Indices
 from gridshell.painter import Dots, Faces, Layer, Lines, View, corners, hexadecimal
 
 _SHADES = 12
 """Steps of each channel that lines of a ramp of colours come in."""
+
+
+def write_stages(
+    folder: Path, made: gs.Quadrangulation, *, name: str, net: gs.ControlMesh | None = None
+) -> None:
+    """Write ``stages.html``, to turn, and one SVG per stage into *folder*, which exists.
+
+    Raises
+    ------
+    OutputError
+        When a file cannot be written.
+    """
+    found, view = stages(made, net), view_of(made)
+    shown = drawn(found, view)
+    page = stage_page(name, found, shown, view, made.report.plain())
+    try:
+        for picture in shown:
+            (folder / picture["file"]).write_text(picture["svg"], encoding="utf-8")
+        (folder / "stages.html").write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(
+            "The pictures cannot be written", where=str(folder), value=error.strerror or ""
+        ) from None
 
 
 def stage_page(

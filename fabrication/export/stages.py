@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import gridshell as gs
 from fabrication.colours import FAMILY_COLOURS
-from fabrication.errors import OutputError
 from fabrication.words import plural
 from gridshell.arrays import Floats, Indices
 from gridshell.painter import (
@@ -124,31 +122,6 @@ def drawn(found: Sequence[Stage], view: View) -> tuple[dict[str, Any], ...]:
         }
         for stage in found
     )
-
-
-def write_stages(
-    folder: Path, made: gs.Quadrangulation, *, name: str, net: gs.ControlMesh | None = None
-) -> None:
-    """Write ``stages.html``, to turn, and one SVG per stage into *folder*, which exists.
-
-    Raises
-    ------
-    OutputError
-        When a file cannot be written.
-    """
-    from fabrication.export.stage_page import stage_page
-
-    found, view = stages(made, net), view_of(made)
-    shown = drawn(found, view)
-    page = stage_page(name, found, shown, view, made.report.plain())
-    try:
-        for picture in shown:
-            (folder / picture["file"]).write_text(picture["svg"], encoding="utf-8")
-        (folder / "stages.html").write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(
-            "The pictures cannot be written", where=str(folder), value=error.strerror or ""
-        ) from None
 
 
 # ---- the stages --------------------------------------------------------------------------------

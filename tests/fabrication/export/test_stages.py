@@ -9,8 +9,8 @@ import gridshell as gs
 from fabrication.errors import OutputError
 from fabrication.export import stages as module
 from fabrication.export.scene.page import scripts
-from fabrication.export.stage_page import stage_scene
-from fabrication.export.stages import HOTTEST, heat, pictures, stages, view_of, write_stages
+from fabrication.export.stage_page import stage_scene, write_stages
+from fabrication.export.stages import HOTTEST, heat, pictures, stages, view_of
 from gridshell.mesh import grid_quads
 from gridshell.painter import Dots, Faces, Lines
 
