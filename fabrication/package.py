@@ -189,6 +189,7 @@ def net_of(
     begun: Start,
     progress: gs.Progress | None = None,
     workspace: gs.Workspace | None = None,
+    engine: gs.Engine | None = None,
 ) -> FoundNet:
     """The net of *project* from where it begins.
 
@@ -196,6 +197,7 @@ def net_of(
     ----------
     progress : called after every step with its number and the step.
     workspace : what solves one after the other share.
+    engine : the linear solver; that of the route's recipe without.
 
     Raises
     ------
@@ -203,6 +205,8 @@ def net_of(
         When none is found near the start.
     """
     recipe = route.recipe(folder)
+    if engine is not None:
+        recipe = replace(recipe, stop=replace(recipe.stop, engine=engine))
     result = _found(optimised(project, recipe, begun, progress, workspace), begun)
     quality = gs.measured_against(result.quality, result.control, begun.surface)
     if project.umbrella is not None:  # D2 only fills it: its quads have no node angle

@@ -25,6 +25,9 @@ from fabrication.sections import Project
 from fabrication.source_sections import MeshSection, RemeshSource
 from fabrication.starts import Stage, Start, start
 
+_QUICK = gs.Engine(repeatable=False)
+"""Large nets agree with those of a run to rounding: the last bit would cost a tenth of the time."""
+
 Told = Callable[[str], None]
 """Hears what is being done."""
 
@@ -131,7 +134,7 @@ def find_net(
         stepped(residuals[-1])
 
     route = route_of(project)
-    net = net_of(project, route, folder, begun, progress, starts.workspace)
+    net = net_of(project, route, folder, begun, progress, starts.workspace, _QUICK)
     figures = gs.quad_figures(
         net.result.control,
         planarity=net.recipe.planarity,

@@ -251,6 +251,7 @@ def _pardiso_settings(repeatable_threads: int) -> dict[int, int]:
         1: 1,  # none of the others is a default
         2: 2,  # nested dissection; the parallel one is not repeatable
         18: -1,  # report the size of the factor
+        24: 0 if repeatable_threads else 10,  # the faster of its ways, whose bits may differ
         34: repeatable_threads,
         35: 0,
     }

@@ -456,6 +456,25 @@ def test_reruns_agree_to_the_last_bit(enneper, threads):
     np.testing.assert_array_equal(runs[0].control.vertices, runs[1].control.vertices)
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_quick_engine_finds_the_same_net_but_for_rounding(enneper, threads):
+    exact, quick = (
+        gs.optimize(
+            enneper(16),
+            gs.NetRecipe(
+                angle=np.radians(75.0),
+                stop=Stop(engine=Engine(threads=threads, repeatable=repeatable)),
+            ),
+            anchor=gs.Free(),
+        )
+        for repeatable in (True, False)
+    )
+    assert quick.converged
+    size = np.ptp(exact.control.vertices)
+    apart = np.abs(quick.control.vertices - exact.control.vertices).max()
+    assert apart < 1e-9 * size
+
+
 def test_at_least_one_thread_is_needed():
     with pytest.raises(gs.SettingError, match="At least one thread"):
         Engine(threads=0)
