@@ -174,7 +174,7 @@ class _Pardiso:
         n = len(equations.free)
         threads = engine.threads or (1 if n < _ONE_THREAD_BELOW else os.cpu_count() or 1)
         self._threads = threads
-        for place, value in _pardiso_settings(threads if engine.repeatable else 0).items():
+        for place, value in _pardiso_settings(threads, engine).items():
             self._solver.set_iparm(place, value)
         self._matrix = csr_matrix(
             (np.ones(equations.nonzeros), equations.indices, equations.indptr), shape=(n, n)
@@ -232,7 +232,7 @@ def pardiso_solve(upper: csr_matrix, right: Floats, engine: Engine) -> Floats:
 
     solver = PyPardisoSolver(mtype=2)
     threads = engine.threads or os.cpu_count() or 1
-    for place, value in _pardiso_settings(threads if engine.repeatable else 0).items():
+    for place, value in _pardiso_settings(threads, engine).items():
         solver.set_iparm(place, value)
     solver.set_phase(13)
     upper.sort_indices()
@@ -245,14 +245,15 @@ def pardiso_solve(upper: csr_matrix, right: Floats, engine: Engine) -> Floats:
     return np.asarray(result)
 
 
-def _pardiso_settings(repeatable_threads: int) -> dict[int, int]:
+def _pardiso_settings(threads: int, engine: Engine) -> dict[int, int]:
     """Parameters by their number in MKL's manual (from one), zero-based column indices."""
+    quick = threads > 1 and not engine.repeatable  # with one thread the other way is the faster one
     return {
         1: 1,  # none of the others is a default
         2: 2,  # nested dissection; the parallel one is not repeatable
         18: -1,  # report the size of the factor
-        24: 0 if repeatable_threads else 10,  # the faster of its ways, whose bits may differ
-        34: repeatable_threads,
+        24: 10 if quick else 0,
+        34: 0 if quick else threads,
         35: 0,
     }
 
