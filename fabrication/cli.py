@@ -93,14 +93,14 @@ def _run_app(interrupts: list[int]) -> None:
     except Exception as error:
         from gridshell.errors import GridshellError
 
-        if interrupts:  # a library that was being loaded may turn one into an error of its own
-            _fail("Interrupted.", 130)
         if isinstance(error, GridshellError):
             _fail(str(error), 2)
         if isinstance(error, MemoryError):
             _fail("The net is too large for the memory. Try: fewer lamellas.", 2)
         if isinstance(error, OSError):
             _fail(f"The system refused a file or folder ({error}).", 2)
+        if interrupts:  # a library that was being loaded may turn one into an error of its own
+            _fail("Interrupted.", 130)
         if os.environ.get("GRIDSHELL_DEBUG", "") not in ("", "0"):
             raise
         said = " ".join(f"{type(error).__name__}: {error}".split())

@@ -6,17 +6,16 @@ from math import degrees
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup
 
 from fabrication.colours import FAMILY_COLOURS, css
+from fabrication.export.html import rendered
 from fabrication.export.line_chart import Course, line_chart
 from fabrication.export.scene.layers import Scene
 from fabrication.export.scene.motion import motion_layers
 from fabrication.export.scene.page import as_json, scripts, style
 from fabrication.export.scene.whole import middle
 from fabrication.motion import Motion, MotionStep
-from fabrication.words import fixed, plural
 
 _LABELS = (
     ("opening", "Opening"),
@@ -34,16 +33,10 @@ _LABELS = (
 
 def write_motion_page(path: Path | str, found: Motion, *, name: str, opening: float) -> None:
     """Write the page; it begins at the position nearest to *opening* and opens from disk."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(fixed=fixed, plural=plural)
     centre = middle(np.concatenate([step.strips.reshape(-1, 3) for step in found.steps]))
     texts = [_texts(step) for step in found.steps]
-    page = environment.get_template("motion.html").render(
+    page = rendered(
+        "motion.html",
         name=name,
         steps=found.steps,
         kept=found.kept,

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import ChainableUndefined, Environment, FileSystemLoader
 from markupsafe import Markup
 
 from fabrication.colours import FAMILY_COLOURS, css
 from fabrication.errors import OutputError
+from fabrication.export.html import rendered
 from fabrication.export.quality_series import Series, histograms, stress_series
 from fabrication.export.scene.layers import Scene
 from fabrication.export.scene.page import as_json, deflated, scripts, style
@@ -35,7 +35,6 @@ from fabrication.panel_structure import PanelStructure
 from fabrication.parts import FlatPart
 from fabrication.strength import BayStress, bay_stress
 from fabrication.stress_checks import stress_section
-from fabrication.words import fixed, number, plural
 
 
 def write_report(
@@ -140,7 +139,8 @@ def shared(
     drawings : of all cutting sheets.
     """
     level, words = verdict(report.get("findings"))
-    page: str = _template(template).render(
+    return rendered(
+        template,
         name=name,
         report=report,
         level=level,
@@ -155,16 +155,3 @@ def shared(
         viewer_style=style(),
         **more,
     )
-    return page
-
-
-def _template(name: str) -> Any:
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=ChainableUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(figure=number, fixed=fixed, plural=plural)
-    return environment.get_template(name)

@@ -7,17 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup
 
 import gridshell as gs
 from fabrication.errors import OutputError
+from fabrication.export.html import rendered
 from fabrication.export.scene import layers as scene
 from fabrication.export.scene.packing import on_screen
 from fabrication.export.scene.page import as_json, scripts, style
 from fabrication.export.scene.whole import middle
 from fabrication.export.stages import Stage, drawn, stages, view_of
-from fabrication.words import fixed, number, plural
 from gridshell.arrays import Floats, Indices
 from gridshell.painter import Dots, Faces, Layer, Lines, View, corners, hexadecimal
 
@@ -63,14 +62,8 @@ def stage_page(
     view : where the 3D view looks from at first.
     figures : of the remeshing, as ``RemeshReport.plain()``.
     """
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(figure=number, fixed=fixed, plural=plural)
-    return environment.get_template("stages.html").render(
+    return rendered(
+        "stages.html",
         name=name,
         pictures=[{**picture, "svg": Markup(picture["svg"])} for picture in shown],
         figures=figures,

@@ -84,7 +84,7 @@ def _density(project: Project) -> Iterator[Knob]:
             for n, letter in enumerate("uv"):
                 yield _count(f"patch.panels.{n}", f"Panels along {letter}", counts[n])
         case BisectingPatchSection(cells=count, u=None):
-            yield _count("patch.cells", "Control quads around", count, step=2)
+            yield _count("patch.cells", "Control quads around", count, least=4, step=2)
         case BisectingPatchSection(cells=count) | SingularPatchSection(cells=count):
             yield _count("patch.cells", "Control quads each way", count)
     remesh = project.remesh
@@ -104,9 +104,8 @@ def _density(project: Project) -> Iterator[Knob]:
         )
 
 
-def _count(key: str, label: str, count: int, *, step: int = 1) -> Knob:
-    """A number; of a ring, whose quads are *step* by *step*, from an even one on."""
-    low, high = min(4 if step == 2 else 3, count), max(40, 2 * count)
+def _count(key: str, label: str, count: int, *, least: int = 3, step: int = 1) -> Knob:
+    low, high = min(least, count), max(40, 2 * count)
     return Knob(key, label, "Net", "", count, low, high, float(step), whole=True)
 
 

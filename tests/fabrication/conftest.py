@@ -20,7 +20,8 @@ import fabrication as fab
 import gridshell as gs
 from fabrication import kernel_job
 from fabrication.bodies import structure_bodies
-from fabrication.cut import Slot, outline
+from fabrication.cut import Cuts, Slot, outline
+from fabrication.jointed import Jointed
 from fabrication.panel_structure import PanelStructure, PanelSystem, panelled
 from fabrication.unroll import Development
 from gridshell.mesh import grid_quads
@@ -344,3 +345,25 @@ def in_program():
         assert file.Write(str(path), 7)
 
     return write
+
+
+@pytest.fixture(scope="session")
+def drilled_tubes() -> Callable[[gs.ControlMesh], tuple[fab.Structure, tuple[fab.FlatPart, ...]]]:
+    """Tubes of 50 x 20 x 2.5 mm on a net, drilled 8.3 mm at every node: structure and parts."""
+
+    def build(control: gs.ControlMesh) -> tuple[fab.Structure, tuple[fab.FlatPart, ...]]:
+        profile = fab.HollowProfile(50.0, 20.0, fab.GRP, 2.5)
+        design = fab.structure(gs.diagonal_meshes(control)[0], profile)
+        cuts = {
+            strip.mark: Cuts(
+                drills=tuple(
+                    fab.Drill(float(s - strip.start), 8.3, f"N{i}", "pin")
+                    for i, s in enumerate(strip.stations)
+                )
+            )
+            for strip in design.lamellas
+        }
+        jointed = Jointed(design, design, tuple(range(len(design.lamellas))), cuts, ())
+        return design, fab.parts_of(jointed)
+
+    return build

@@ -1,43 +1,22 @@
 import numpy as np
 import pytest
 
-import fabrication as fab
 import gridshell as gs
-from fabrication.cut import Cuts
-from fabrication.jointed import Jointed
 from fabrication.solid import lamella_solid, volume
 from fabrication.stock import hollow_area
 
-TUBE = fab.HollowProfile(50.0, 20.0, fab.GRP, 2.5)
-
-
-def tubes(surface, patch, spacing=None):
-    control = gs.control_patch(surface, patch)
-    design = fab.structure(gs.diagonal_meshes(control)[0], TUBE)
-    cuts = {
-        strip.mark: Cuts(
-            drills=tuple(
-                fab.Drill(float(s - strip.start), 8.3, f"N{i}", "pin")
-                for i, s in enumerate(strip.stations)
-            )
-        )
-        for strip in design.lamellas
-    }
-    jointed = Jointed(design, design, tuple(range(len(design.lamellas))), cuts, ())
-    return design, fab.parts_of(jointed)
-
 
 @pytest.fixture(scope="module")
-def twisted():
+def twisted(drilled_tubes):
     patch = gs.BisectingPatch(v=(-0.8, 0.8), cells=16)
-    return tubes(gs.Catenoid(1500.0), patch)
+    return drilled_tubes(gs.control_patch(gs.Catenoid(1500.0), patch))
 
 
 @pytest.fixture(scope="module")
-def straight():
+def straight(drilled_tubes):
     """The rulings of a hyperbolic paraboloid: no bending, only twist."""
     patch = gs.AsymptoticPatch(p=(-0.2, 0.2), q=(-0.2, 0.2), lamellas=(3, 3))
-    return tubes(gs.Hypar(4000.0), patch)
+    return drilled_tubes(gs.control_patch(gs.Hypar(4000.0), patch))
 
 
 @pytest.mark.parametrize("made", ["twisted", "straight"])

@@ -4,31 +4,17 @@ import trimesh
 
 import fabrication as fab
 import gridshell as gs
-from fabrication.cut import Cuts, Edge, Floor, Hole, Relief, Slot, outline
+from fabrication.cut import Edge, Floor, Hole, Relief, Slot, outline
 from fabrication.export.interchange.strip_mesh import strip_mesh
-from fabrication.jointed import Jointed
 from fabrication.sides import strip_sides
 from fabrication.solid import lamella_solid
 
-TUBE = fab.HollowProfile(50.0, 20.0, fab.GRP, 2.5)
-
 
 @pytest.fixture(scope="module")
-def tubes():
+def tubes(drilled_tubes):
     patch = gs.BisectingPatch(v=(-0.8, 0.8), cells=16)
-    net = gs.diagonal_meshes(gs.control_patch(gs.Catenoid(1500.0), patch))[0]
-    design = fab.structure(net, TUBE)
-    cuts = {
-        strip.mark: Cuts(
-            drills=tuple(
-                fab.Drill(float(s - strip.start), 8.3, f"N{i}", "pin")
-                for i, s in enumerate(strip.stations)
-            )
-        )
-        for strip in design.lamellas
-    }
-    jointed = Jointed(design, design, tuple(range(len(design.lamellas))), cuts, ())
-    return list(zip(design.lamellas, fab.parts_of(jointed), strict=True))
+    design, parts = drilled_tubes(gs.control_patch(gs.Catenoid(1500.0), patch))
+    return list(zip(design.lamellas, parts, strict=True))
 
 
 def whole(design):
