@@ -238,7 +238,8 @@ def _explained(path: Path, error: ValidationError) -> ProjectError:
     problems = error.errors(include_url=False)
     first = min(problems, key=lambda problem: problem["type"] != "extra_forbidden")
     key, location = _key(first["loc"]), first["loc"]
-    others = [k for k in dict.fromkeys(_key(problem["loc"]) for problem in problems) if k != key]
+    told_already = {key, _meant(location) if first["type"] == "extra_forbidden" else key}
+    others = [k for k in dict.fromkeys(_key(p["loc"]) for p in problems) if k not in told_already]
     told = ", ".join(others[:_TOLD]) + (" ..." if len(others) > _TOLD else "")
     more = f" (to mend, too: {told})" if others else ""
     where = f"{path}, {key}" if key else str(path)
@@ -336,6 +337,11 @@ def _key(location: tuple[int | str, ...]) -> str:
         last in _sections() or str(last).endswith((" material", " angle"))
     )
     return ".".join(str(part) for part in (shown if branch else [*shown, last]))
+
+
+def _meant(location: tuple[int | str, ...]) -> str:
+    """The dotted key that a misspelt one most likely stands for."""
+    return _key((*location[:-1], _nearest_key(location).strip("'")))
 
 
 def _nearest_key(location: tuple[int | str, ...]) -> str:

@@ -516,6 +516,12 @@ def test_other_mistakes_are_named(refused):
     assert "(to mend, too: sheet.length, sheet.width)" in error.what
 
 
+def test_a_needed_key_that_is_misspelt_is_one_mistake(refused):
+    error = refused({"sheet.length": GONE, "sheet.lenght": 8000.0})
+    assert error.what == "Unknown key"
+    assert error.advice == "'length'"
+
+
 def test_of_many_mistakes_some_are_named(refused):
     wrong = {f"profile.{letter}": 1.0 for letter in "abcdefg"}
     told = "profile.b, profile.c, profile.d, profile.e ..."
